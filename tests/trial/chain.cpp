@@ -252,12 +252,11 @@ TEST_CASE(
 }
 
 TEST_CASE("between slow rows: a late and a lagging sine are those, not their straight lines") {
-    using diagnosis::chain::following;
     const double period = 0.05, w = 2 * std::numbers::pi, late = 0.018;
     std::vector<double> x(400);
     for (std::size_t k = 0; k < x.size(); ++k) x[k] = std::sin(w * static_cast<double>(k) * period);
-    const auto delayed = diagnosis::chain::followed(x, period, following::delayed, late),
-               lagged = diagnosis::chain::followed(x, period, following::first_order, late);
+    const auto delayed = diagnosis::chain::delayed(x, period, late),
+               lagged = diagnosis::chain::lagged(x, period, late);
     for (std::size_t k = 100; k < 390; ++k) {
         const double t = static_cast<double>(k) * period;
         CHECK(std::abs(delayed[k] - std::sin(w * (t - late))) < 5e-4); // a straight line: 1e-2
@@ -267,11 +266,10 @@ TEST_CASE("between slow rows: a late and a lagging sine are those, not their str
 }
 
 TEST_CASE("between slow rows: where a motion stops, what follows it late does not overshoot and turn back") {
-    using diagnosis::chain::following;
     std::vector<double> x;
     for (int k = 0; k < 60; ++k) x.push_back(k < 20 ? 0 : k < 40 ? 0.005 * (k - 20) : 0.1);
     for (const double late : {0.004, 0.018, 0.043, 0.061}) {
-        const auto delayed = diagnosis::chain::followed(x, 0.05, following::delayed, late);
+        const auto delayed = diagnosis::chain::delayed(x, 0.05, late);
         for (std::size_t k = 1; k < x.size(); ++k) {
             CHECK(delayed[k] >= delayed[k - 1]);
             CHECK(delayed[k] <= 0.1);

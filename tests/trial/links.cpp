@@ -93,19 +93,18 @@ TEST_CASE("link: described play and delay are moved inside their tolerances, and
     axis.drive.command_delay_s = 0.04;
     axis.tolerance.given = {{"backlash", 0.1}, {"command_delay", 0.1}};
     for (const double wider : {1.06, 1.5}) {
-        const auto late = followed(x, period, following::delayed, 1.05 * 0.04);
+        const auto late = delayed(x, period, 1.05 * 0.04);
         const auto play = behind_a_play(late, wider * 2e-5);
         described_link d{.readings = read_beside(x, [&](std::size_t k) { return late[k] + play[k] - x[k]; }),
                          .described = {}};
         d.readings.asked = true;
         d.described.play = 2e-5;
-        d.described.how = following::delayed;
-        d.described.lag = 0.04;
+        d.described.delay = 0.04;
         std::vector<parameter_estimate> moved;
         const described_link out = calibrated_link(readings(d.readings), d, axis, rules(), moved);
         // The part of the play that its tolerance does not hold looks like lateness, at the slowest speed most.
         const double late_by_play = (wider - std::min(wider, 1.1)) * 2e-5 / 2 / 0.011;
-        CHECK(std::abs(out.described.lag - 1.05 * 0.04) < 0.002 * 0.04 + late_by_play);
+        CHECK(std::abs(out.described.delay - 1.05 * 0.04) < 0.002 * 0.04 + late_by_play);
         CHECK(std::abs(out.described.play / (std::min(wider, 1.1) * 2e-5) - 1) < 0.01);
         CHECK(moved.size() == 2);
     }

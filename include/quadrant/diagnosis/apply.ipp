@@ -24,55 +24,21 @@ public:
         const json before = out_.machine;
         for (const axis_result& a : d.axes) {
             if (!before["axes"].contains(a.name))
-                throw bad_input(
-                    file_, fmt::format("axes.{}: is missing; the diagnosis is of another machine", a.name));
+                throw bad_input(file_, fmt::format("axes.{}: is missing; {}", a.name, of_another));
             if (a.kind != kind_of(a.name))
-                throw bad_input(file_, fmt::format("axes.{}: is a {} axis; the diagnosis is of another machine",
-                                                   a.name, name_of(kind_of(a.name))));
+                throw bad_input(file_, fmt::format("axes.{}: is a {} axis; {}", a.name,
+                                                   name_of(kind_of(a.name)), of_another));
         }
         const bool with_suspects = std::any_of(d.causes.begin(), d.causes.end(),
                                                [&](const cause& c) { return taken(c) && !claimed(c); });
         for (cause c : d.causes) {
             if (with_suspects && !c.with_suspects.empty()) c.parameters = c.with_suspects;
-            // A group is sure where its names are not: any reading of it predicts the record.
-            if (!taken(c))
-                out_.notes.push_back(fmt::format(
-                    "{} of axis {} is left out: probability {:.2f}, below {:g}; in the diagnosis it took the "
-                    "{}",
-                    c.effect, c.axis, std::max(c.probability, c.group_probability), at_least_,
-                    text_of(c.gap_before_force_rms_N.value > 0 || !(c.gap_before_position_rms_m.value > 0)
-                                ? fmt::format("force from {:.3g} N to {:.3g} N", c.gap_before_force_rms_N.value,
-                                              c.gap_after_force_rms_N.value)
-                                : fmt::format("position from {:.3g} m to {:.3g} m",
-                                              c.gap_before_position_rms_m.value,
-                                              c.gap_after_position_rms_m.value),
-                            kind_of(c.axis))));
-            else if (std::find(d.own_effects.begin(), d.own_effects.end(), c.effect) != d.own_effects.end())
-                out_.notes.push_back(
-                    fmt::format("{} of axis {} is left out: it is an effect of your own, and a machine "
-                                "file has no key for it",
-                                c.effect, c.axis));
-            else if (const effect* known = effect_named(c.effect); known && known->keys.empty() &&
-                                                                   c.effect != "controller_mismatch" &&
-                                                                   (known->starts || !c.parameters.empty()))
-                out_.notes.push_back(fmt::format("{} of axis {} is left out: it happened in this record, and a "
-                                                 "machine file has no key for it",
-                                                 c.effect, c.axis));
-            else if (c.parameters.empty())
-                out_.notes.push_back(fmt::format(
-                    "{} of axis {} is left out: the diagnosis gives no value for it", c.effect, c.axis));
-            else
+            if (const std::string why = left_out(c, d); why.empty())
                 join(c, before["axes"][c.axis]);
+            else
+                out_.notes.push_back(fmt::format("{} of axis {} is left out: {}", c.effect, c.axis, why));
         }
-        for (const axis_result& a : d.axes) {
-            cause moved; // never one that the machine file lacked
-            moved.axis = a.name;
-            moved.effect = "calibration";
-            moved.described = true;
-            moved.parameters = with_suspects && !a.calibrated_with_suspects.empty() ? a.calibrated_with_suspects
-                                                                                    : a.calibrated;
-            join(moved, before["axes"][a.name]);
-        }
+        for (const axis_result& a : d.axes) join(calibration(a, d, with_suspects), before["axes"][a.name]);
         for (const axis_result& a : d.axes)
             if (before["axes"][a.name].contains("plant")) follow(a.name, before["axes"][a.name]["plant"]);
         read_machine(out_.machine.dump(), fmt::format("{} with the diagnosis applied", file_)); // or it throws
@@ -81,8 +47,49 @@ public:
 
 private:
     using json = nlohmann::ordered_json;
+    static constexpr std::string_view of_another = "the diagnosis is of another machine";
 
+    /// A group is sure where its names are not: any reading of it predicts the record.
     bool taken(const cause& c) const { return std::max(c.probability, c.group_probability) >= at_least_; }
+
+    /// Why a cause does not go into the machine file; empty: it does.
+    std::string left_out(const cause& c, const diagnosis_result& d) const {
+        if (!taken(c)) {
+            const bool of_force =
+                c.gap_before_force_rms_N.value > 0 || !(c.gap_before_position_rms_m.value > 0);
+            const std::string shrinks =
+                of_force ? fmt::format("force from {:.3g} N to {:.3g} N", c.gap_before_force_rms_N.value,
+                                       c.gap_after_force_rms_N.value)
+                         : fmt::format("position from {:.3g} m to {:.3g} m", c.gap_before_position_rms_m.value,
+                                       c.gap_after_position_rms_m.value);
+            return fmt::format("probability {:.2f}, below {:g}; in the diagnosis it took the {}",
+                               std::max(c.probability, c.group_probability), at_least_,
+                               text_of(shrinks, kind_of(c.axis)));
+        }
+        if (std::find(d.own_effects.begin(), d.own_effects.end(), c.effect) != d.own_effects.end())
+            return "it is an effect of your own, and a machine file has no key for it";
+        const effect* known = effect_named(c.effect);
+        const bool happened = known && known->keys.empty() && (known->starts || !c.parameters.empty());
+        if (happened && c.effect != "controller_mismatch")
+            return "it happened in this record, and a machine file has no key for it";
+        return c.parameters.empty() ? "the diagnosis gives no value for it" : "";
+    }
+
+    /// What calibration moved, as a cause of numbers that the file has. A number that a cause gave stands as it
+    /// gave it.
+    cause calibration(const axis_result& a, const diagnosis_result& d, bool with_suspects) const {
+        cause moved;
+        moved.axis = a.name;
+        moved.effect = "calibration";
+        moved.described = true;
+        moved.parameters =
+            with_suspects && !a.calibrated_with_suspects.empty() ? a.calibrated_with_suspects : a.calibrated;
+        std::erase_if(moved.parameters, [&](const parameter_estimate& p) {
+            return std::any_of(d.causes.begin(), d.causes.end(),
+                               [&](const cause& c) { return c.axis == a.name && taken(c) && gives(c, p.key); });
+        });
+        return moved;
+    }
 
     axis_kind kind_of(const std::string& axis) const {
         const auto found = std::find_if(read_.axes.begin(), read_.axes.end(),
@@ -98,9 +105,7 @@ private:
         for (const parameter_estimate& p : c.parameters) {
             const auto [box, key] = place_of(c, p.key);
             if (box == "controller" && !before.contains("controller"))
-                throw bad_input(
-                    file_,
-                    fmt::format("axes.{}.controller: is missing; the diagnosis is of another machine", c.axis));
+                throw bad_input(file_, fmt::format("axes.{}.controller: is missing; {}", c.axis, of_another));
             if (box == "controller") rename_old_keys(out_.machine["axes"][c.axis][box]);
             set(c.axis, box, key, value_of(p), c.effect);
         }
@@ -136,8 +141,7 @@ private:
         const json& plant = out_.machine["axes"][c.axis]["plant"];
         for (const std::string& given : {per_volt, own_key(c.axis, "force_constant_N_per_A")})
             if (plant.contains(given)) return {"plant", given};
-        throw bad_input(file_, fmt::format("axes.{}.plant.{}: is missing; the diagnosis is of another machine",
-                                           c.axis, per_volt));
+        throw bad_input(file_, fmt::format("axes.{}.plant.{}: is missing; {}", c.axis, per_volt, of_another));
     }
 
     /// A number, or an array of harmonics or elements where the machine file has one.

@@ -104,8 +104,9 @@ QUADRANT_DIAGNOSIS_DECL fitted settled(const readings& r, fitted f) {
                 change = std::max(change, std::abs(by) / std::max(next.rate, 1e-300));
             }
             if ((f.of[j] == term::delay || f.of[j] == term::first_order) && first_of_its_term) {
-                next.lag = std::max(next.lag + by, 0.05 * next.lag);
-                change = std::max(change, std::abs(by) / std::max(next.lag, 1e-300));
+                double& late = next.late(*f.of[j]);
+                late = std::max(late + by, 0.05 * late);
+                change = std::max(change, std::abs(by) / std::max(late, 1e-300));
             }
         }
         if (change < 1e-7) break;

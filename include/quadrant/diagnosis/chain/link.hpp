@@ -84,9 +84,6 @@ inline behind_play play_of(std::span<const double> x, double width) {
     return out;
 }
 
-/// How a drive follows what it is asked for.
-enum class following { at_once, delayed, first_order };
-
 /// A signal that is held from row to row, `late` seconds later: its mean over the period of each row.
 inline std::vector<double> held_later(std::span<const double> x, double period, double late) {
     std::vector<double> out(x.begin(), x.end());
@@ -141,20 +138,23 @@ inline std::vector<double> at_most_as_fast(std::span<const double> x, double a_r
     return out;
 }
 
-/// What follows x late by `lag` seconds: as it was then, or with a first-order lag (a position loop of gain 1 /
-/// lag).
-inline std::vector<double> followed(std::span<const double> x, double period, following how, double lag) {
+/// What x was `delay` seconds before.
+inline std::vector<double> delayed(std::span<const double> x, double period, double delay) {
     std::vector<double> out(x.begin(), x.end());
-    if (how == following::at_once || !(lag > 0)) return out;
-    const double rows = lag / period;
-    if (how == following::delayed) {
-        const double whole = std::ceil(rows);
-        for (std::size_t k = 0; k < x.size(); ++k) {
-            const auto from = static_cast<std::ptrdiff_t>(k) - static_cast<std::ptrdiff_t>(whole);
-            out[k] = between_rows(x, from)(whole - rows);
-        }
-        return out;
+    if (!(delay > 0)) return out;
+    const double rows = delay / period, whole = std::ceil(rows);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        const auto from = static_cast<std::ptrdiff_t>(k) - static_cast<std::ptrdiff_t>(whole);
+        out[k] = between_rows(x, from)(whole - rows);
     }
+    return out;
+}
+
+/// What follows x with a first-order lag: a position loop of gain 1 / lag.
+inline std::vector<double> lagged(std::span<const double> x, double period, double lag) {
+    std::vector<double> out(x.begin(), x.end());
+    if (!(lag > 0)) return out;
+    const double rows = lag / period;
     const double keeps = std::exp(-1 / rows);
     for (std::size_t k = 1; k < x.size(); ++k) {
         const between_rows in(x, static_cast<std::ptrdiff_t>(k) - 1);

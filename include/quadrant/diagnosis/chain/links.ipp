@@ -115,13 +115,8 @@ QUADRANT_DIAGNOSIS_DECL described_link asked_to(const axis_description& axis, co
     l.last_count = count;
     l.turn = axis.transmission.travel_per_turn_m.value_or(0);
     out.described.rate = axis.drive.setpoint_rate_limit_m_per_s.value_or(0) * out.set_point_to_load();
-    if (const auto& gain = axis.drive.position_gain_per_s) {
-        out.described.how = following::first_order;
-        out.described.lag = 1 / *gain;
-    } else if (const auto& delay = axis.drive.command_delay_s) {
-        out.described.how = following::delayed;
-        out.described.lag = *delay;
-    }
+    if (const auto& gain = axis.drive.position_gain_per_s) out.described.lag = 1 / *gain;
+    out.described.delay = axis.drive.command_delay_s.value_or(0);
     return out;
 }
 

@@ -64,8 +64,8 @@ constexpr std::string_view name_of(term t) {
 /// here too.
 struct link_model {
     std::vector<term> freed{};
-    following how = following::at_once;
-    double lag = 0;                             ///< [s]
+    double delay = 0;                           ///< of the set-points [s]
+    double lag = 0;                             ///< 1 / gain of a position loop [s]
     double rate = 0;                            ///< at most, of what is followed; 0: any [m/s]
     double play = 0;                            ///< [m]
     double compliance = 0;                      ///< 1 / stiffness [m/N]
@@ -78,11 +78,15 @@ struct link_model {
     std::vector<double> smooth{};               ///< as described, of order 2 on, see smooth_curve() [m]
     double smooth_from = 0, smooth_to = 0;      ///< [m]
 
-    /// What the set-points x, a row each, make the axis ask for, and what follows that; `later`: more lag [s].
-    std::vector<double> follows(std::span<const double> x, double period, double later = 0) const {
-        return rate > 0 ? followed(at_most_as_fast(x, rate * period), period, how, lag + later)
-                        : followed(x, period, how, lag + later);
+    /// What the set-points x, a row each, make the axis ask for, and what follows that.
+    std::vector<double> follows(std::span<const double> x, double period) const {
+        return lagged(delayed(rate > 0 ? at_most_as_fast(x, rate * period) : std::vector(x.begin(), x.end()),
+                              period, delay),
+                      period, lag);
     }
+    /// The number of a freed delay or lag.
+    double& late(term t) { return t == term::delay ? delay : lag; }
+    double late(term t) const { return t == term::delay ? delay : lag; }
     bool has(term t) const { return std::find(freed.begin(), freed.end(), t) != freed.end(); }
 };
 

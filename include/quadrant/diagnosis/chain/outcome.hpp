@@ -28,11 +28,6 @@ struct outcome {
     std::optional<double> unnamed_motor_coulomb{};
 };
 
-/// The described value of a cause's first key, 0 when there is none.
-QUADRANT_DIAGNOSIS_DECL double described_value(const axis_description& axis, const std::string& key);
-/// Whether a value, or a part of its interval, is inside what its owner says of it.
-QUADRANT_DIAGNOSIS_DECL bool inside_tolerance(const axis_description& axis, const parameter_estimate& p);
-
 /// How far the load is from the motor, at every row, but for what the readings alone make: their zeros and
 /// their moments [m].
 QUADRANT_DIAGNOSIS_DECL std::vector<double> apart(const readings& r, const fitted& f);

@@ -3,23 +3,6 @@
 
 namespace quadrant::inline v0::diagnosis::chain {
 
-QUADRANT_DIAGNOSIS_DECL double described_value(const axis_description& axis, const std::string& key) {
-    for (const effect* e : every_effect())
-        for (const machine_key& k : e->keys)
-            if (k.name == key)
-                if (const auto values = numbers_of(axis, k, *e); !values.empty()) return values[0];
-    return 0;
-}
-
-QUADRANT_DIAGNOSIS_DECL bool inside_tolerance(const axis_description& axis, const parameter_estimate& p) {
-    const machine_key* key = key_named(p.key);
-    const double described = described_value(axis, p.key);
-    if (!key || !key->tolerance || described == 0) return false;
-    const double half = axis.tolerance.of(std::string(key->tolerance_name())) * std::abs(described);
-    // A value that may as well be a described one is none that differs.
-    return p.values[0].low <= described + half && p.values[0].high >= described - half;
-}
-
 QUADRANT_DIAGNOSIS_DECL std::vector<double> apart(const readings& r, const fitted& f) {
     const auto& l = r.of();
     const auto velocity = derivative(zero_phase(l.first, 0.06 / l.period, l.period), l.period);
@@ -69,7 +52,7 @@ QUADRANT_DIAGNOSIS_DECL std::string note_without_name(const described_link& d, c
                                                       const axis_description& axis, term what) {
     if (what != term::drift)
         return fmt::format("axis {}: {} is read {:.3g} ms later than {}.", axis.name, d.to,
-                           1e3 * a.best.model.lag, d.from);
+                           1e3 * a.best.model.delay, d.from);
     const auto part = a.best.part(what);
     return fmt::format(
         "axis {}: the difference of {} and {} drifts by {:.3g} um over the record: warmth, or something "
@@ -86,8 +69,8 @@ QUADRANT_DIAGNOSIS_DECL described_link calibrated_link(const readings& r, const 
     if (given.compliance > 0 && !d.readings.force.empty()) waiting.push_back(term::spring);
     if (given.motor_coulomb > 0 && !d.readings.force.empty()) waiting.push_back(term::motor_friction);
     if (given.rate > 0) waiting.push_back(term::rate);
-    if (given.how == following::delayed) waiting.push_back(term::delay);
-    if (given.how == following::first_order) waiting.push_back(term::first_order);
+    if (given.delay > 0) waiting.push_back(term::delay);
+    if (given.lag > 0) waiting.push_back(term::first_order);
     described_link out = d;
     while (!waiting.empty()) {
         link_model m = out.described;
@@ -101,15 +84,19 @@ QUADRANT_DIAGNOSIS_DECL described_link calibrated_link(const readings& r, const 
             const double described = described_value(axis, p.key);
             const double part =
                 key && key->tolerance ? axis.tolerance.of(std::string(key->tolerance_name())) : 0;
-            const double value = std::clamp(p.values[0].value, (1 - part) * described, (1 + part) * described);
-            if (value != p.values[0].value) held.push_back(t);
-            p.values[0].value = value;
+            const auto inside = [&](double v) {
+                return std::clamp(v, (1 - part) * described, (1 + part) * described);
+            };
+            estimate& e = p.values[0];
+            const double value = inside(e.value);
+            if (value != e.value) held.push_back(t), p.on_bound = true;
+            e = {value, inside(e.low), inside(e.high)};
             if (value != described) found.push_back(p);
             if (t == term::play) out.described.play = value;
             if (t == term::spring) out.described.compliance = 1 / value;
             if (t == term::motor_friction) out.described.motor_coulomb = value;
             if (t == term::rate) out.described.rate = value * out.set_point_to_load();
-            if (t == term::delay) out.described.lag = value;
+            if (t == term::delay) out.described.delay = value;
             if (t == term::first_order) out.described.lag = 1 / value;
         }
         if (held.empty() || held.size() == waiting.size()) {
@@ -179,6 +166,9 @@ inline told_findings tell_findings(outcome& out, const readings& r, const descri
             out.places.insert(out.places.end(), more.begin(), more.end());
         }
         told.all_claimed &= claimed(c);
+        // A claimed number is written as it is found, from wherever calibration had taken it.
+        if (claimed(c))
+            std::erase_if(out.calibrated, [&](const parameter_estimate& p) { return gives(c, p.key); });
         out.causes.push_back(std::move(c));
     }
     return told;

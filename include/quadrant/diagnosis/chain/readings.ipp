@@ -125,11 +125,10 @@ readings::columns_of(const link_model& m, term t, std::span<const double> driven
     case term::delay:
     case term::first_order: {
         const double more = 0.05 * link_.period;
-        const auto later = m.follows(first_, link_.period, more);
-        const auto speed = derivative(driven, link_.period);
-        const Eigen::VectorXd by_lag = by_row([&](std::size_t k) { return (later[k] - driven[k]) / more; });
-        if (t == term::delay) return {by_lag};
-        return {by_lag, by_row([&](std::size_t k) { return speed[k]; })}; // and read a little earlier or later
+        link_model later = m;
+        later.late(t) += more;
+        const auto then = later.follows(first_, link_.period);
+        return {by_row([&](std::size_t k) { return (then[k] - driven[k]) / more; })};
     }
     case term::scale:
         return {by_row([&](std::size_t k) { return driven[k] - middle_; })};

@@ -46,9 +46,11 @@ public:
 private:
     /// `best` with each term that it lacks and that pays, the best first.
     std::vector<fitted> with_each(const fitted& best) const;
-    /// One way from each of the best first terms: two that look alike alone (a lag and a play at one speed)
-    /// lead to different ends.
+    /// Ways from the best first terms, and from the best two beside each: what looks alike alone (a lag and a
+    /// play at one speed, a delay and a lag beside a slow follower) leads to different ends.
     fitted from_several(const fitted& given) const;
+    /// From `way` to `next`, a model with one term more, and on, as long as it pays.
+    fitted to_the_end(fitted way, fitted next) const;
     static double energy(const fitted& f) { return f.held_out * f.held_out; }
     double floor() const { return r_.noise() * r_.noise(); }
     /// Its score, with the odds of its names.

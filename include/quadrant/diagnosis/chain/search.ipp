@@ -32,7 +32,8 @@ QUADRANT_DIAGNOSIS_DECL answer seeker::find() const {
     out.given = fit_columns(r_, described_);
     const fitted best = from_several(out.given);
     out.best = best;
-    out.at_floor = best.held_out < limits_.near_floor * r_.noise();
+    constexpr double near = 1.5; // noise and rounding are known to that: they are read off the record
+    out.at_floor = best.held_out < near * r_.noise();
     order(out);
     for (finding& f : out.findings) weigh(out, f);
     return out;
@@ -51,21 +52,30 @@ QUADRANT_DIAGNOSIS_DECL std::vector<fitted> seeker::with_each(const fitted& best
 }
 
 QUADRANT_DIAGNOSIS_DECL fitted seeker::from_several(const fitted& given) const {
-    constexpr std::size_t ways = 3, most = 7;
+    constexpr std::size_t ways = 3, seconds = 2;
     fitted best = given;
     auto first = with_each(given);
     first.resize(std::min(first.size(), ways), given);
-    for (fitted way : first) {
-        while (way.model.freed.size() < most) {
-            auto next = with_each(way);
-            if (next.empty()) break;
-            fitted on = pruned(std::move(next.front()));
-            if (!(value(on) > value(way))) break; // one term came for another, and would go for it again
-            way = std::move(on);
-        }
-        if (value(way) > value(best)) best = std::move(way);
+    for (const fitted& way : first) {
+        if (value(way) > value(best)) best = way;
+        auto second = with_each(way);
+        second.resize(std::min(second.size(), seconds), given);
+        for (fitted& next : second)
+            if (fitted end = to_the_end(way, std::move(next)); value(end) > value(best)) best = std::move(end);
     }
     return best;
+}
+
+QUADRANT_DIAGNOSIS_DECL fitted seeker::to_the_end(fitted way, fitted next) const {
+    constexpr std::size_t most = 7;
+    for (;;) {
+        fitted on = pruned(std::move(next));
+        if (!(value(on) > value(way))) return way; // one term came for another, and would go for it again
+        way = std::move(on);
+        auto more = with_each(way);
+        if (more.empty() || way.model.freed.size() >= most) return way;
+        next = std::move(more.front());
+    }
 }
 
 QUADRANT_DIAGNOSIS_DECL double seeker::value(const fitted& f) {
@@ -88,7 +98,8 @@ QUADRANT_DIAGNOSIS_DECL bool seeker::pays(const fitted& with, const fitted& with
 
 QUADRANT_DIAGNOSIS_DECL double seeker::half_range(const fitted& f, term t) const {
     if (t == term::play) return f.model.play / 2;
-    if (t == term::delay || t == term::first_order) return f.model.lag * r_.speed();
+    if (t == term::delay || t == term::first_order)
+        return std::abs(f.model.late(t) - described_.late(t)) * r_.speed();
     if (t == term::rate) { // how far what is asked runs away
         const auto free = r_.first();
         const auto held = at_most_as_fast(free, f.model.rate * r_.of().period);
@@ -149,7 +160,7 @@ QUADRANT_DIAGNOSIS_DECL fitted seeker::joined(const fitted& from, const fitted& 
     link_model m = from.model;
     m.freed.push_back(t);
     if (t == term::play) m.play = best.model.play;
-    if (t == term::delay || t == term::first_order) m.how = best.model.how, m.lag = best.model.lag;
+    if (t == term::delay || t == term::first_order) m.late(t) = best.model.late(t);
     if (t == term::rate) m.rate = best.model.rate;
     if (t == term::pitch)
         m.pitch_period = best.model.pitch_period, m.pitch_harmonics = best.model.pitch_harmonics;

@@ -112,13 +112,10 @@ QUADRANT_DIAGNOSIS_DECL fitted with_term(const readings& r, const fitted& from, 
 
 inline fitted begun_with_lag(const readings& r, const fitted& from, term t) {
     link_model m = from.model;
-    const auto other = t == term::delay ? term::first_order : term::delay;
-    if (m.has(other)) return from;
-    m.how = t == term::delay ? following::delayed : following::first_order;
     const double seconds = r.of().period * static_cast<double>(r.of().rows());
-    m.lag = least(
-        [&](double lag) {
-            m.lag = lag;
+    m.late(t) = least(
+        [&](double late) {
+            m.late(t) = late;
             return fit_columns(r, m).rms;
         },
         0.002 * r.of().period, seconds / 20, 22, 12);
@@ -219,7 +216,7 @@ QUADRANT_DIAGNOSIS_DECL fitted without_term(const readings& r, const fitted& fro
     link_model m = from.model;
     std::erase(m.freed, t);
     if (t == term::play) m.play = described.play;
-    if (t == term::delay || t == term::first_order) m.how = described.how, m.lag = described.lag;
+    if (t == term::delay || t == term::first_order) m.late(t) = described.late(t);
     if (t == term::rate) m.rate = described.rate;
     if (t == term::motor_friction) m.motor_coulomb = described.motor_coulomb;
     if (t == term::steps) m.steps.clear();

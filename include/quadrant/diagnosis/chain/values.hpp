@@ -14,6 +14,11 @@ inline constexpr double best_law = 0.01;
 /// A value with 95 %: scatter between pieces, and what no law is better than: one per cent, and `count`.
 QUADRANT_DIAGNOSIS_DECL estimate with_interval(double value, double deviation, double count);
 
+/// The described value of a cause's first key, 0 when there is none.
+QUADRANT_DIAGNOSIS_DECL double described_value(const axis_description& axis, const std::string& key);
+/// Whether a value, or a part of its interval, is inside what its owner says of it.
+QUADRANT_DIAGNOSIS_DECL bool inside_tolerance(const axis_description& axis, const parameter_estimate& p);
+
 /// Values of one term of the best model.
 class term_values {
 public:

@@ -9,6 +9,23 @@ QUADRANT_DIAGNOSIS_DECL estimate with_interval(double value, double deviation, d
     return {value, value - half, value + half};
 }
 
+QUADRANT_DIAGNOSIS_DECL double described_value(const axis_description& axis, const std::string& key) {
+    for (const effect* e : every_effect())
+        for (const machine_key& k : e->keys)
+            if (k.name == key)
+                if (const auto values = numbers_of(axis, k, *e); !values.empty()) return values[0];
+    return 0;
+}
+
+QUADRANT_DIAGNOSIS_DECL bool inside_tolerance(const axis_description& axis, const parameter_estimate& p) {
+    const machine_key* key = key_named(p.key);
+    const double described = described_value(axis, p.key);
+    if (!key || !key->tolerance || described == 0) return false;
+    const double half = axis.tolerance.of(std::string(key->tolerance_name())) * std::abs(described);
+    // A value that may as well be a described one is none that differs.
+    return p.values[0].low <= described + half && p.values[0].high >= described - half;
+}
+
 QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> term_values::of(term t) const {
     const double half_a_count = d_.readings.count() / 2;
     const auto at = places(t);
@@ -23,7 +40,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> term_values::of(term t) 
             {"drive.setpoint_rate_limit_m_per_s", {with_interval(found / unit, deviation(at[0]) / unit, 0)}}};
     }
     case term::delay:
-        return {{"drive.command_delay_s", {with_interval(m.lag + value(at[0]), deviation(at[0]), 0)}}};
+        return {{"drive.command_delay_s", {with_interval(m.delay + value(at[0]), deviation(at[0]), 0)}}};
     case term::first_order: {
         const estimate lag = with_interval(std::max(m.lag + value(at[0]), 0.05 * m.lag), deviation(at[0]), 0);
         return {{"drive.position_gain_per_s",

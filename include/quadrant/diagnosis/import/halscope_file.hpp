@@ -10,9 +10,10 @@
 
 namespace quadrant::inline v0::diagnosis::detail {
 
-/// The head of a file that LinuxCNC's halscope saved: the period, then the names of the channels. Up to LinuxCNC
-/// 2.8 each row has name and value of every channel in turns, with the decimal sign of the user's language, and
-/// one row more than was sampled; from 2.9 on the names stand once, above columns with ';' between them.
+/// The head of a file that halscope of LinuxCNC saved: the period, then the names of the channels. Up to
+/// LinuxCNC 2.8 each row has name and value of every channel in turns, with the decimal sign of the user's
+/// language, and one row more than was sampled; from 2.9 on the names stand once, above columns with ';'
+/// between them.
 struct halscope_file {
     double period_s = 0;
     bool in_turns = true;
@@ -24,8 +25,8 @@ struct halscope_file {
         out.decimal = out.separator == ' ' && rows.find(',') != rows.npos ? ',' : '.';
         return out;
     }
-    /// Reads the head; the current line is then the first row (`in_turns`), or the names above it. None: another
-    /// program wrote the file.
+    /// Reads the head; the current line is then the first row (`in_turns`), or the names above it. None:
+    /// another program wrote the file.
     static std::optional<halscope_file> read(foreign_lines& lines, const import_map::layout& layout) {
         if (!lines.next()) return std::nullopt;
         std::string words(lines.current());

@@ -96,6 +96,11 @@ struct cause {
 };
 /// Said to be there, by its name or one that it is confusable with; else it is a suspect.
 inline bool claimed(const cause& c) { return c.group_probability >= 0.5; }
+/// Whether a number of it is that key of the machine file.
+inline bool gives(const cause& c, std::string_view key) {
+    return std::any_of(c.parameters.begin(), c.parameters.end(),
+                       [&](const parameter_estimate& p) { return p.key == key; });
+}
 
 /// Signals for the pictures, one entry a sample (t, ...), or a bin (frequency, ...).
 struct axis_signals {

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSL-1.0
+// What follows its set-points late: a mill that is logged ten times a second, and a servo that is slow, too.
+#include "claims.hpp"
+
+#include <quadrant/diagnosis/apply.hpp>
+#include <quadrant/diagnosis/diagnose.hpp>
+#include <quadrant/diagnosis/read_log.hpp>
+#include <quadrant/diagnosis/read_machine.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+using namespace quadrant::diagnosis;
+using workshop::said;
+using workshop::value_of;
+
+namespace {
+
+/// Lines of a part program, with corners that are rounded within 0.1 s, followed with a first-order lag of
+/// 8 ms by an axis that is logged ten times a second in steps of 0.1 mm.
+std::string milled() {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> u(0, 1);
+    constexpr double h = 1e-3, lag = 8e-3;
+    std::string out = "t_s,y_ref_m,y_pos_m\n";
+    double asked = 0, speed = 0, wanted = 0, reached = 0;
+    for (int k = 0; k < 100000; ++k) {
+        if (k % 700 == 0) wanted = (asked > 0 ? -1 : 1) * (k % 1400 == 0 ? 0.048 : 0.005 + 0.03 * u(random));
+        speed += std::clamp(wanted - speed, -0.5 * h, 0.5 * h);
+        asked += speed * h;
+        reached += h / lag * (asked - reached);
+        if (k % 100) continue;
+        char row[80];
+        std::snprintf(row, sizeof row, "%.6f,%.4f,%.4f\n", k * h, asked, reached);
+        out += row;
+    }
+    return out;
+}
+machine_description mill(const std::string& drive, const std::string& count = "1e-4") {
+    return read_machine(
+        R"({"schema": "quadrant.machine/1", "sample_period_s": 0.1, "axes": {"y": {"drive": {)" + drive +
+            R"(}, "encoder": {"resolution_m": )" + count + "}}}}",
+        "machine.json");
+}
+diagnosis_result diagnosed(const machine_description& machine) {
+    std::istringstream log(milled());
+    return diagnose(machine, read_log(log, "log.csv"));
+}
+
+} // namespace
+
+TEST_CASE(
+    "positions: a lag of a tenth of a row is found from a gain that is far off, and stands as it is applied") {
+    for (const char* described :
+         {R"("position_gain_per_s": 20)", R"("position_gain_per_s": 40)", R"("command_delay_s": 0.1)"}) {
+        const auto machine = mill(described);
+        const auto d = diagnosed(machine);
+        CAPTURE(described);
+        CAPTURE(said(d));
+        REQUIRE(d.causes.size() == 1);
+        CHECK(d.causes[0].group_probability > 0.9);
+        const auto& found = d.causes[0].parameters.at(0);
+        const double late =
+            found.key == "drive.command_delay_s" ? found.values[0].value : 1 / found.values[0].value;
+        CHECK(late == doctest::Approx(8e-3).epsilon(0.1));
+        CHECK(d.axes[0].calibrated.empty());
+        const auto again = diagnosed(apply(machine, d));
+        CHECK(again.axes[0].gap.position_rms_m ==
+              doctest::Approx(d.axes[0].gap_after.position_rms_m).epsilon(0.05));
+    }
+}
+
+TEST_CASE("positions: what is twice the rounding of the readings is a gap") {
+    const auto d = diagnosed(mill(R"("command_delay_s": 0.03)", "1e-3"));
+    CAPTURE(said(d));
+    const auto& gap = d.axes[0].gap;
+    REQUIRE(gap.position_rms_m > 1.6 * gap.noise_floor_position_rms_m);
+    REQUIRE(gap.position_rms_m < 2.9 * gap.noise_floor_position_rms_m);
+    CHECK(d.axes[0].verdict != verdict::no_gap);
+    CHECK(d.axes[0].verdict != verdict::within_tolerance);
+}
+
+TEST_CASE("positions: a servo that is slow, late and soft: its fastest speed comes first") {
+    constexpr double h = 1e-3, fastest = 4.2, late = 0.03, softness = 0.03, count = 1.534e-3;
+    std::string out = "t_s,q_ref_rad,q_pos_rad\n";
+    std::vector<double> asked;
+    double target = 0, q = 0;
+    for (std::size_t k = 0; k < 3000; ++k) { // a chirp from 0.3 to 3 Hz
+        const double t = static_cast<double>(k) * h;
+        asked.push_back(1.88 * std::sin(2 * std::numbers::pi * (0.3 + 0.45 * t) * t));
+        const double then = asked[k - std::min(k, static_cast<std::size_t>(late / h))];
+        target += std::clamp(then - target, -fastest * h, fastest * h);
+        q += h / softness * (target - q);
+        if (k % 20) continue;
+        char row[80];
+        std::snprintf(row, sizeof row, "%.6f,%.6f,%.6f\n", t, asked[k], count * std::round(q / count));
+        out += row;
+    }
+    std::istringstream log(out);
+    const auto d = diagnose(read_machine(R"({"schema": "quadrant.machine/1", "sample_period_s": 0.02,
+        "axes": {"q": {"encoder": {"resolution_rad": 0.001534}}}})",
+                                         "machine.json"),
+                            read_log(log, "log.csv"));
+    CAPTURE(said(d));
+    REQUIRE(d.causes.size() >= 2);
+    CHECK(d.causes[0].effect == "setpoint_rate_limit");
+    CHECK(value_of(d.causes[0], "drive.setpoint_rate_limit_rad_per_s").value ==
+          doctest::Approx(fastest).epsilon(0.1));
+}
