@@ -75,8 +75,7 @@ private:
         return c.parameters.empty() ? "the diagnosis gives no value for it" : "";
     }
 
-    /// What calibration moved, as a cause of numbers that the file has. A number that a cause gave stands as it
-    /// gave it.
+    /// What calibration moved, as a cause that the file has. A number that a cause gave stands as given.
     cause calibration(const axis_result& a, const diagnosis_result& d, bool with_suspects) const {
         cause moved;
         moved.axis = a.name;
@@ -227,8 +226,8 @@ inline void take_own(axis_description& axis, diagnosis_result& d, double at_leas
 QUADRANT_DIAGNOSIS_DECL applied_diagnosis apply(std::string_view machine_text, std::string_view machine_file,
                                                 const diagnosis_result& d, double at_least) {
     read_machine(machine_text, machine_file);
-    const auto json = nlohmann::ordered_json::parse(detail::without_byte_order_mark(machine_text));
-    return detail::corrector(json, machine_file, at_least).take(d);
+    const std::string_view text = detail::without_byte_order_mark(machine_text);
+    return detail::corrector(nlohmann::ordered_json::parse(text), machine_file, at_least).take(d);
 }
 
 QUADRANT_DIAGNOSIS_DECL machine_description apply(const machine_description& machine, diagnosis_result d,
