@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../fit/late_command.hpp"
 #include "../fit/regression.hpp"
 #include "axis_start.hpp"
 
@@ -32,7 +33,7 @@ public:
             throw bad_input("init", fmt::format("axis {} is {}: its command is in V, A or {}", axis_,
                                                 name_of(kind_), key_of("N", kind_)));
         const std::optional<double> constant = asked("force-constant");
-        const axis_regression found = log && !log->still ? regress(*log, text_.period()) : axis_regression{};
+        const axis_regression found = log && !log->still ? regressed_from(*log) : axis_regression{};
         const double per_unit = constant.value_or(1);
         std::optional<double> mass = asked("mass");
         const bool estimated = !mass && ask_.from_log && (constant || is_force(unit)) &&
@@ -75,6 +76,11 @@ public:
     }
 
 private:
+    /// A row's command acts after its delay, and is then its mean until the next row.
+    axis_regression regressed_from(const axis_log& log) const {
+        const double period = text_.period(), late = 0.5 * period + asked("delay").value_or(0);
+        return regress(read_earlier(log, -late, period), period);
+    }
     std::string missing(const std::string& unit, const std::optional<double>& mass,
                         const std::optional<double>& constant, const axis_regression& found) const {
         std::string text = mass ? "--force-constant is missing" : "--mass is missing";
