@@ -31,7 +31,9 @@ public:
         for (std::size_t i = 0; i < tables_.size(); ++i)
             for (foreign_column& c : tables_[i].columns) {
                 const bool angle = c.name.ends_with("_pos_rad") || c.name.ends_with("_ref_rad");
-                if (const std::size_t times = angle ? unwrap(c.values) : 0; times > 0)
+                if (!angle) continue;
+                const auto after_gap = clock_of_rows(tables_[i].t, tables_[i].written).after_gap;
+                if (const std::size_t times = unwrap(c.values, after_gap); times > 0)
                     tell(i, fmt::format("{} starts again {} times within one turn: it goes on here", c.name,
                                         times));
             }

@@ -56,8 +56,9 @@ private:
             out.notes.push_back(fmt::format("{}: axis {}{}.", out.file, name, text));
         };
         if (*at.kind == axis_kind::rotary) {
-            const std::size_t times = unwrap(position.values),
-                              asked = reference ? unwrap(reference->values) : 0;
+            const auto after_gap = rows.after_gap();
+            const std::size_t times = unwrap(position.values, after_gap),
+                              asked = reference ? unwrap(reference->values, after_gap) : 0;
             if (times + asked > 0 && reference) turn_to(reference->values, position.values);
             if (times > 0)
                 tell(fmt::format(": the position starts again {} times within one turn; it goes on here",
@@ -121,7 +122,7 @@ private:
             axis.duty_step = header_.columns[*at.duty].step.step();
         }
         if (at.motor) {
-            if (at.motor_unit == "rad") unwrap(header_.columns[*at.motor].values);
+            if (at.motor_unit == "rad") unwrap(header_.columns[*at.motor].values, rows.after_gap());
             axis.motor = rows.smooth(header_.columns[*at.motor].values);
             axis.motor_unit = at.motor_unit;
             axis.motor_step = header_.columns[*at.motor].step.step();

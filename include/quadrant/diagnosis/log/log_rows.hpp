@@ -32,6 +32,13 @@ public:
     /// The row of the file behind the k-th that is kept.
     std::size_t row(std::size_t k) const { return kept_[k]; }
 
+    /// Of each row of the file, whether rows are missing before it.
+    std::vector<unsigned char> after_gap() const {
+        std::vector<unsigned char> out(kept_.size() + doubled_, 0);
+        for (std::size_t k = 0; k < kept_.size(); ++k) out[kept_[k]] = clock_.after_gap[k];
+        return out;
+    }
+
     /// What to report of the clock.
     std::vector<std::string> notes() const {
         std::vector<std::string> out;
