@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // What follows its set-points late: a mill that is logged ten times a second, and a servo that is slow, too.
 #include "claims.hpp"
+#include "refusal.hpp"
 
 #include <quadrant/diagnosis/apply.hpp>
 #include <quadrant/diagnosis/diagnose.hpp>
@@ -114,4 +115,13 @@ TEST_CASE("positions: a servo that is slow, late and soft: its fastest speed com
     CHECK(d.causes[0].effect == "setpoint_rate_limit");
     CHECK(value_of(d.causes[0], "drive.setpoint_rate_limit_rad_per_s").value ==
           doctest::Approx(fastest).epsilon(0.1));
+}
+
+TEST_CASE("positions: set-points that have the name of a command are told how to be named") {
+    std::string text = milled();
+    text.replace(text.find("y_ref_m"), 7, "y_cmd_m");
+    std::istringstream log(text);
+    const std::string refusal =
+        refusal_of([&] { diagnose(mill(R"("command_delay_s": 0.01)"), read_log(log, "log.csv")); });
+    CHECK(refusal.find("name y_cmd_m y_ref_m") != std::string::npos);
 }

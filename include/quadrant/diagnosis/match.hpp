@@ -99,11 +99,16 @@ inline void check_speed_of_loop(const axis_description& axis, const machine_desc
 /// Refuses a log with one position only of an axis that is a chain of them.
 inline void check_positions(const axis_description& axis, const axis_log& log, const std::string& file) {
     const std::string m = key_of("m", axis.kind);
-    if (!log.has_reference && log.motor.empty() && !log.still)
-        throw bad_input(file,
-                        fmt::format("axis {0}: column {0}_ref_{1}, {0}_motor_pos_rad or {0}_motor_pos_{1} is "
-                                    "missing: without a plant two positions are compared",
-                                    axis.name, m));
+    if (log.has_reference || !log.motor.empty() || log.still) return;
+    const std::string in_metres = m == "m" ? fmt::format(" or {}_motor_pos_m", axis.name) : "",
+                      set_points = log.command_unit == m
+                                       ? fmt::format(" (name {0}_cmd_{1} {0}_ref_{1}: it is what was asked)",
+                                                     axis.name, m)
+                                       : "";
+    throw bad_input(file,
+                    fmt::format("axis {0}: column {0}_ref_{1} or {0}_motor_pos_rad{2} is missing: without a "
+                                "plant two positions are compared{3}",
+                                axis.name, m, in_metres, set_points));
 }
 
 } // namespace detail
