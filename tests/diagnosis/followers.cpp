@@ -123,5 +123,6 @@ TEST_CASE("positions: set-points that have the name of a command are told how to
     std::istringstream log(text);
     const std::string refusal =
         refusal_of([&] { diagnose(mill(R"("command_delay_s": 0.01)"), read_log(log, "log.csv")); });
+    CAPTURE(refusal);
     CHECK(refusal.find("name y_cmd_m y_ref_m") != std::string::npos);
 }
