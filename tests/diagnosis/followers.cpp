@@ -5,6 +5,7 @@
 
 #include <quadrant/diagnosis/apply.hpp>
 #include <quadrant/diagnosis/diagnose.hpp>
+#include <quadrant/diagnosis/match.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 
@@ -122,7 +123,7 @@ TEST_CASE("positions: set-points that have the name of a command are told how to
     text.replace(text.find("y_ref_m"), 7, "y_cmd_m");
     std::istringstream log(text);
     const std::string refusal =
-        refusal_of([&] { diagnose(mill(R"("command_delay_s": 0.01)"), read_log(log, "log.csv")); });
+        refusal_of([&] { check_match(mill(R"("command_delay_s": 0.01)"), read_log(log, "log.csv")); });
     CAPTURE(refusal);
     CHECK(refusal.find("name y_cmd_m y_ref_m") != std::string::npos);
 }
