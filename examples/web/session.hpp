@@ -4,6 +4,7 @@
 #include "dropped.hpp"
 #include "exported.hpp"
 #include "form.hpp"
+#include "warm_up.hpp"
 #include "what_if.hpp"
 
 #include "quadrant_gap/comparison_report.hpp"
@@ -48,6 +49,7 @@ private:
 
     nlohmann::json answer(const nlohmann::json& request) {
         const std::string what = request.at("do").get<std::string>();
+        if (what == "warm up") return warm_up(), nlohmann::json::object();
         if (what == "look") return look(request.at("file").get<std::string>());
         if (what == "import") return import(request);
         if (what == "form") return begun_machine(log(request.at("log").get<std::string>()), request);

@@ -9,6 +9,7 @@ async function start(base64) {
     const packed = Uint8Array.from(atob(base64), c => c.charCodeAt(0));
     const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
     module = await quadrant_module({wasmBinary: await new Response(stream).arrayBuffer()});
+    ask({do: 'warm up'}); // warm_up.hpp
 }
 
 function with_text(text, use) {

