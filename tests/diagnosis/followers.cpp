@@ -5,6 +5,7 @@
 
 #include <quadrant/diagnosis/apply.hpp>
 #include <quadrant/diagnosis/diagnose.hpp>
+#include <quadrant/diagnosis/init.hpp>
 #include <quadrant/diagnosis/match.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
@@ -78,6 +79,17 @@ TEST_CASE(
         CHECK(again.axes[0].gap.position_rms_m ==
               doctest::Approx(d.axes[0].gap_after.position_rms_m).epsilon(0.05));
     }
+}
+
+TEST_CASE("positions: init writes no loops that leave more of the path than a gain alone") {
+    std::istringstream text(milled());
+    const auto log = read_log(text, "log.csv");
+    init_request r;
+    r.drive = drive_kind::position;
+    r.values["mass"][""] = 100;
+    const std::string refusal = refusal_of([&] { init_machine(r, &log); });
+    CAPTURE(refusal);
+    CHECK(refusal.find("is faster than rows of 100 ms show") != std::string::npos);
 }
 
 TEST_CASE("positions: what is twice the rounding of the readings is a gap") {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../chain/fit.hpp"
 #include "../fit/with_drives.hpp"
 #include "../machine_file/drive_keys.hpp"
 #include "../machine_file/machine_keys.hpp"
@@ -110,6 +111,7 @@ private:
         const double period = text_.period();
         const drive_estimate found =
             estimate_drive(description, with_drive(description, log, period), period, known);
+        if (ask_.drive == drive_kind::position) check_beside_follower(log, found);
         if (description.drive.takes_position() && found.between != interpolation::hold)
             here()["drive"]["interpolation"] = name_of(found.between);
         std::string loose;
@@ -134,6 +136,32 @@ private:
                                "reading has {:.2g} {} of noise{}",
                                axis_, found.path_rms, key_of("m", kind_), found.path_noise, key_of("m", kind_),
                                loose.empty() ? "" : "; not identified from this log: " + loose));
+    }
+    /// Refuses loops that leave much more of the path than a position gain alone does: their velocity loop is
+    /// faster than the rows show, and a search for it ended somewhere.
+    void check_beside_follower(const axis_log& log, const drive_estimate& found) const {
+        const std::vector<double>& asked = log.has_reference ? log.reference : log.command;
+        const double period = text_.period();
+        const auto left_by = [&](double lag) {
+            const auto follows = chain::lagged(asked, period, lag);
+            double sum = 0, square = 0;
+            for (std::size_t k = 0; k < follows.size(); ++k) {
+                const double e = log.position[k] - follows[k];
+                sum += e, square += e * e;
+            }
+            const auto n = static_cast<double>(follows.size());
+            return std::sqrt(std::max(0.0, square / n - sum * sum / (n * n)));
+        };
+        const double longest = period * static_cast<double>(asked.size()) / 20;
+        const double lag = chain::least(left_by, 0.01 * period, longest, 24, 12), left = left_by(lag);
+        if (left > 0.5 * found.path_rms) return;
+        const std::string m = key_of("m", kind_);
+        throw bad_input(file_,
+                        fmt::format("axis {}: the loops that fit best leave {:.3g} {} rms of the path, and a "
+                                    "position gain of {:.4g} 1/s alone leaves {:.3g} {}: the velocity loop "
+                                    "is faster than rows of {:.3g} ms show; record more often, or give "
+                                    "--drive-velocity-gain, or describe that gain alone and no plant",
+                                    axis_, found.path_rms, m, 1 / lag, left, m, 1e3 * period));
     }
     static double rounded(double value) { // to five digits
         return value == 0 ? 0 : std::stod(fmt::format("{:.5g}", value));
