@@ -19,7 +19,7 @@ function post(message, moved) {
     });
 }
 
-function start_worker() {
+function start_worker(again) {
     worker = new Worker(worker_url);
     waiting = new Map();
     sent = 0;
@@ -30,7 +30,7 @@ function start_worker() {
         resolve(data.answer);
     };
     worker.onerror = fault => { for (const resolve of waiting.values()) resolve({error: fault.message || 'the worker failed'}); };
-    post({wasm: the('wasm').textContent});
+    post({wasm: the('wasm').textContent, again});
     for (const file of kept.values()) post({put: file});
 }
 
@@ -48,7 +48,7 @@ async function put(name, bytes) {
 async function restart(looked) {
     worker.terminate();
     for (const resolve of waiting.values()) resolve({cancelled: true});
-    start_worker();
+    start_worker(true);
     for (const request of looked) await call(request);
 }
 

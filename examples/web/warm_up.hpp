@@ -12,8 +12,8 @@
 namespace quadrant_web {
 
 /// Diagnoses a short record of an axis that lacks its Coulomb friction, and forgets it. A browser compiles what
-/// runs often once more, and faster: with this done before a log is dropped, its first diagnosis takes half of
-/// the time.
+/// runs often once more, and faster: with this done before a log is dropped, its first diagnosis takes seven
+/// tenths of the time.
 inline void warm_up() {
     using namespace quadrant::diagnosis;
     constexpr double period = 5e-4, mass = 20, viscous = 100, coulomb = 15, force_constant = 50;

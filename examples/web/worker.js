@@ -5,11 +5,11 @@
 'use strict';
 let module;
 
-async function start(base64) {
+async function start(base64, again) {
     const packed = Uint8Array.from(atob(base64), c => c.charCodeAt(0));
     const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
     module = await quadrant_module({wasmBinary: await new Response(stream).arrayBuffer()});
-    ask({do: 'warm up'}); // warm_up.hpp
+    if (!again) ask({do: 'warm up'}); // warm_up.hpp
 }
 
 function with_text(text, use) {
@@ -30,6 +30,6 @@ const ask = request => JSON.parse(with_text(JSON.stringify(request), at => modul
 
 let turn = Promise.resolve();
 onmessage = ({data}) => {
-    turn = turn.then(() => data.wasm ? start(data.wasm) : data.put ? put(data.put) : ask(data.ask))
+    turn = turn.then(() => data.wasm ? start(data.wasm, data.again) : data.put ? put(data.put) : ask(data.ask))
         .catch(fault => ({error: String(fault)})).then(answer => postMessage({id: data.id, answer}));
 };

@@ -136,6 +136,17 @@ TEST_CASE(
     CHECK(out.machine["axes"]["y"]["plant"].dump() == R"({"force_constant_N_per_A":80.0,"mass_kg":50})");
 }
 
+TEST_CASE("apply: a number that a cause gave is not written over by where calibration had taken it") {
+    auto d = of({named("x", "mass", {value("mass_kg", {410})}, true)});
+    d.axes[0].calibrated = {value("mass_kg", {357}), value("coulomb_N", {125})};
+    const auto plant = applied(d).machine["axes"]["x"]["plant"];
+    CHECK(plant["mass_kg"] == 410);
+    CHECK(plant["coulomb_N"] == 125);
+    // A cause that is not sure enough to be written leaves its number to calibration.
+    d.causes[0].probability = d.causes[0].group_probability = 0.6;
+    CHECK(applied(d, 0.9).machine["axes"]["x"]["plant"]["mass_kg"] == 357);
+}
+
 TEST_CASE("apply: the excess of static friction stays when the Coulomb level moves, as in the model that was "
           "fitted") {
     const auto out = applied(of({named("x", "coulomb_friction", {value("coulomb_N", {190})}, true)}));

@@ -81,6 +81,47 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("positions: a delay and a gain that are not there are taken off, and one that is there stays") {
+    struct truth {
+        double delay, lag; // [s]
+    };
+    const auto followed = [](truth t, std::uint64_t seed) {
+        std::mt19937_64 random(seed);
+        std::normal_distribution<double> noise(0, 2e-5);
+        std::string out = "t_s,y_ref_m,y_pos_m\n";
+        double reached = 0;
+        const auto asked = [](double s) { return 0.05 * std::sin(1.7 * s) + 0.02 * std::sin(5.1 * s + 1); };
+        for (int k = 0; k < 60000; ++k) {
+            const double s = 1e-3 * k, then = asked(std::max(0.0, s - t.delay));
+            reached = t.lag > 0 ? reached + 1e-3 / t.lag * (then - reached) : then;
+            if (k % 20) continue;
+            char row[80];
+            std::snprintf(row, sizeof row, "%.6f,%.7f,%.4f\n", s, asked(s), reached + noise(random));
+            out += row;
+        }
+        return out;
+    };
+    for (const char* described : {R"("command_delay_s": 0.05)", R"("position_gain_per_s": 20)",
+                                  R"("command_delay_s": 0.05, "position_gain_per_s": 20)"})
+        for (const truth t : {truth{0, 0}, truth{0.03, 0}, truth{0, 0.03}})
+            for (const std::uint64_t seed : {1, 2, 3}) {
+                auto machine = mill(described);
+                machine.sample_period_s = 0.02;
+                std::istringstream log(followed(t, seed));
+                const auto d = diagnose(machine, read_log(log, "log.csv"));
+                CAPTURE(described);
+                CAPTURE(t.delay);
+                CAPTURE(t.lag);
+                CAPTURE(said(d));
+                CHECK(d.axes[0].verdict == verdict::explained);
+                CHECK(d.axes[0].gap_after.position_rms_m < 1.5 * d.axes[0].gap.noise_floor_position_rms_m);
+                const auto applied = apply(machine, d).axes[0].drive;
+                const double later = applied.command_delay_s.value_or(0) +
+                                     (applied.position_gain_per_s ? 1 / *applied.position_gain_per_s : 0);
+                CHECK(std::abs(later - t.delay - t.lag) < 2e-3);
+            }
+}
+
 TEST_CASE("positions: init writes no loops that leave more of the path than a gain alone") {
     std::istringstream text(milled());
     const auto log = read_log(text, "log.csv");

@@ -392,6 +392,21 @@ TEST_CASE("import: halscope of LinuxCNC 2.9 names its channels once, and samples
     CHECK(near(in.log.sample_period_s, 2e-3, 1e-9));
     CHECK(std::abs(in.log.axes[0].position[49] - 4.88e-3) < 1e-12);
     CHECK(!told(in, "the last row is dropped"));
+    // Newer ones write how the channels were drawn; a channel that nobody asks for may be the first.
+    const auto drawn =
+        import_log(map,
+                   "# Sampling period is 2000000 ns\nspindle.on;joint.0.motor-pos-cmd;joint.0.motor-pos-fb;"
+                   "pid.x.output\n# Position: 0.5;0.5;0.5;0.5\n# Scale: 0;1;2;3\n"
+                   "1;0.1;0.2;0.3\n1;0.4;0.5;0.6\n1;0.7;0.8;0.9\n",
+                   "scope.csv");
+    REQUIRE(drawn.log.samples == 3);
+    CHECK(std::abs(drawn.log.axes[0].position[0] - 2e-4) < 1e-12);
+    // One channel alone; the map's decimal sign is not asked.
+    const auto alone =
+        read_import_map(R"({"schema": "quadrant.import/1", "layout": "halscope", "decimal": ",", "files": [{}],
+        "axes": {"x": {"position": {"column": "a", "unit": "mm"}, "command": {"column": "a", "unit": "V"}}}})",
+                        "map");
+    CHECK(import_log(alone, "# Sampling period is 2000000 ns\na\n0.1\n0.2\n0.4\n", "a.csv").log.samples == 3);
 }
 
 TEST_CASE("import: one number of a list that a cell holds") {

@@ -39,5 +39,15 @@ TEST_CASE("init: the command of a row acts after its delay, and until the next r
         const auto plant = init_machine(r, &log).machine["axes"]["x"]["plant"];
         CHECK(plant["mass_kg"].get<double>() == doctest::Approx(mass).epsilon(0.01));
         CHECK(plant["viscous_N_s_per_m"].get<double>() == doctest::Approx(viscous).epsilon(0.02));
+        if (delay > 0) continue;
+        // What was measured behind the amplifier acts at its row.
+        for (std::size_t k = 0; k < log.samples; ++k) {
+            const double t = (static_cast<double>(k)) * period;
+            log.axes[0].command[k] =
+                30 * std::sin(25 * (t - period / 2)) + 20 * std::sin(9 * (t - period / 2) + 1);
+        }
+        r.command_is = command_origin::measured;
+        const auto measured = init_machine(r, &log).machine["axes"]["x"]["plant"];
+        CHECK(measured["viscous_N_s_per_m"].get<double>() == doctest::Approx(viscous).epsilon(0.02));
     }
 }

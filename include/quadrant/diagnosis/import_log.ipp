@@ -28,15 +28,17 @@ public:
             tables_.push_back(foreign_table_reader(map_, i, files_[i].text, files_[i].name, first_day_).take());
             for (const auto& note : tables_.back().notes) tell(i, note);
         }
-        for (std::size_t i = 0; i < tables_.size(); ++i)
+        for (std::size_t i = 0; i < tables_.size(); ++i) {
+            std::optional<std::vector<unsigned char>> after_gap; // of the rows, where an angle asks for it
             for (foreign_column& c : tables_[i].columns) {
                 const bool angle = c.name.ends_with("_pos_rad") || c.name.ends_with("_ref_rad");
                 if (!angle) continue;
-                const auto after_gap = clock_of_rows(tables_[i].t, tables_[i].written).after_gap;
-                if (const std::size_t times = unwrap(c.values, after_gap); times > 0)
+                if (!after_gap) after_gap = clock_of_rows(tables_[i].t, tables_[i].written).after_gap;
+                if (const std::size_t times = unwrap(c.values, *after_gap); times > 0)
                     tell(i, fmt::format("{} starts again {} times within one turn: it goes on here", c.name,
                                         times));
             }
+        }
         integrate_velocities(map_, tables_, teller());
         const double zero = tables_.front().t.front();
         for (auto& table : tables_)

@@ -37,6 +37,26 @@ inline void score_by_folds(fitted& out, const equations& q, const std::vector<no
         out.score -= samples_of_block / 2 * std::log(sum[b] / count[b] + noise * noise);
 }
 
+/// Nothing follows before it is asked: where a delay or a lag would end below zero its step is held at the one
+/// to zero, and the others are fitted beside it.
+inline void hold_at_zero(std::vector<normal_equations>& piece, const equations& q, const link_model& m,
+                         const Eigen::VectorXd& values, const Eigen::VectorXd& unit) {
+    for (std::size_t j = 0; j < q.of.size(); ++j) {
+        if (q.of[j] != term::delay && q.of[j] != term::first_order) continue;
+        const auto i = static_cast<Eigen::Index>(j);
+        const double to_zero = -m.late(*q.of[j]);
+        if (!(values[i] < to_zero)) continue;
+        const double share = unit[i] / static_cast<double>(piece.size());
+        for (normal_equations& p : piece) {
+            p.b -= to_zero * p.a.col(i);
+            p.a.col(i).setZero();
+            p.a.row(i).setZero();
+            p.a(i, i) = share;
+            p.b[i] = share * to_zero;
+        }
+    }
+}
+
 QUADRANT_DIAGNOSIS_DECL fitted fit_columns(const readings& r, const link_model& m) {
     const equations q = r.of_model(m);
     const auto n = static_cast<std::size_t>(q.difference.size());
@@ -51,12 +71,20 @@ QUADRANT_DIAGNOSIS_DECL fitted fit_columns(const readings& r, const link_model& 
         piece[p].a = c.transpose() * c;
         piece[p].b = c.transpose() * q.difference.segment(static_cast<Eigen::Index>(from), rows);
     }
-    normal_equations all{Eigen::MatrixXd::Zero(width, width), Eigen::VectorXd::Zero(width)};
-    for (const auto& p : piece) {
-        all.a += p.a;
-        all.b += p.b;
-    }
+    const auto sum = [&] {
+        normal_equations out{Eigen::MatrixXd::Zero(width, width), Eigen::VectorXd::Zero(width)};
+        for (const auto& p : piece) {
+            out.a += p.a;
+            out.b += p.b;
+        }
+        return out;
+    };
+    normal_equations all = sum();
     const Eigen::VectorXd unit = all.a.diagonal().cwiseMax(1e-300);
+    if (m.has(term::delay) || m.has(term::first_order)) {
+        hold_at_zero(piece, q, m, solved_normal(all.a, all.b, unit), unit);
+        all = sum();
+    }
     fitted out{.model = m,
                .of = q.of,
                .values = solved_normal(all.a, all.b, unit),
@@ -105,8 +133,8 @@ QUADRANT_DIAGNOSIS_DECL fitted settled(const readings& r, fitted f) {
             }
             if ((f.of[j] == term::delay || f.of[j] == term::first_order) && first_of_its_term) {
                 double& late = next.late(*f.of[j]);
-                late = std::max(late + by, 0.05 * late);
-                change = std::max(change, std::abs(by) / std::max(late, 1e-300));
+                late = std::max(late + by, 0.0);
+                change = std::max(change, std::abs(by) / std::max(late, 1e-3 * r.of().period));
             }
         }
         if (change < 1e-7) break;

@@ -196,8 +196,17 @@ QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& as_described
         throw std::length_error(fmt::format("{} rows that count; a comparison of two positions needs {}",
                                             r.rows().size(), 4 * pieces));
     outcome out;
-    const described_link d = calibrated_link(r, as_described, axis, limits, out.calibrated);
-    const answer a = seeker(r, d.described, left_out, limits).find();
+    described_link d = calibrated_link(r, as_described, axis, limits, out.calibrated);
+    answer a = seeker(r, d.described, left_out, limits).find();
+    // A number that went to the end of its tolerance may have done the work of a cause that was found after it.
+    const auto stops = [](const parameter_estimate& p) { return p.on_bound; };
+    if (!a.findings.empty() && std::any_of(out.calibrated.begin(), out.calibrated.end(), stops)) {
+        answer other = seeker(r, as_described.described, left_out, limits).find();
+        if (other.best.score > a.best.score && other.findings.size() <= a.findings.size()) {
+            a = std::move(other), d = as_described;
+            out.calibrated.clear();
+        }
+    }
     const fitted given = fit_columns(r, as_described.described);
     out.gap = {.position_rms_m = given.rms, .position_peak_m = given.left.cwiseAbs().maxCoeff()};
     out.gap_after = {.position_rms_m = a.best.held_out, .position_peak_m = a.best.left.cwiseAbs().maxCoeff()};

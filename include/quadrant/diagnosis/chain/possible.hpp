@@ -25,12 +25,12 @@ inline double steepest_of(const readings& r, const fitted& f, std::size_t column
 }
 
 /// Whether a model can be: no play is narrower than nothing, no spring gives way against its load, no friction
-/// drives the motor, no error along the travel turns the load back, and no lag is negative, or a tenth of the
-/// record. A fit that needs such a value imitates another term.
+/// drives the motor, no error along the travel turns the load back, and no lag is a tenth of the record. A fit
+/// that needs such a value imitates another term.
 inline bool possible(const readings& r, const fitted& f) {
     const link_model& m = f.model;
+    constexpr double sure = 3; // deviations
     double play = m.play, compliance = m.compliance, friction = 0, narrowest = 0, deviation = 0;
-    bool early = false;  // something follows before it is asked
     double steepest = 0; // of errors along the travel, at most: from 1 on load or reading may turn back
     for (std::size_t j = 0; j < f.of.size(); ++j) {
         const auto i = static_cast<Eigen::Index>(j);
@@ -44,15 +44,13 @@ inline bool possible(const readings& r, const fitted& f) {
         }
         if (f.of[j] == term::spring) compliance += value;
         if (f.of[j] == term::motor_friction) friction += value;
-        if (f.of[j] == term::delay || f.of[j] == term::first_order) early |= !(m.late(*f.of[j]) + value > 0);
         steepest += steepest_of(r, f, j);
     }
     friction += m.motor_coulomb * compliance;
-    constexpr double sure = 3; // deviations
     // Nor does anything follow so late that the record holds hardly any of it.
     const double longest = 0.1 * r.of().period * static_cast<double>(r.of().rows());
     const auto follows = [&](term t) { return !m.has(t) || m.late(t) < longest; };
-    return !early && steepest < 1 && follows(term::delay) && follows(term::first_order) &&
+    return steepest < 1 && follows(term::delay) && follows(term::first_order) &&
            !(m.has(term::play) && (play <= 0 || narrowest < -sure * deviation)) &&
            !(m.has(term::spring) && compliance <= 0) && !(m.has(term::motor_friction) && friction < 0);
 }

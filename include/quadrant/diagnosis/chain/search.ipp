@@ -32,8 +32,7 @@ QUADRANT_DIAGNOSIS_DECL answer seeker::find() const {
     out.given = fit_columns(r_, described_);
     const fitted best = from_several(out.given);
     out.best = best;
-    constexpr double near = 1.5; // noise and rounding are known to that: they are read off the record
-    out.at_floor = best.held_out < near * r_.noise();
+    out.at_floor = best.held_out < near_rounding * r_.noise();
     order(out);
     for (finding& f : out.findings) weigh(out, f);
     return out;
@@ -72,8 +71,9 @@ QUADRANT_DIAGNOSIS_DECL fitted seeker::to_the_end(fitted way, fitted next) const
         fitted on = pruned(std::move(next));
         if (!(value(on) > value(way))) return way; // one term came for another, and would go for it again
         way = std::move(on);
+        if (way.model.freed.size() >= most) return way;
         auto more = with_each(way);
-        if (more.empty() || way.model.freed.size() >= most) return way;
+        if (more.empty()) return way;
         next = std::move(more.front());
     }
 }
@@ -98,8 +98,12 @@ QUADRANT_DIAGNOSIS_DECL bool seeker::pays(const fitted& with, const fitted& with
 
 QUADRANT_DIAGNOSIS_DECL double seeker::half_range(const fitted& f, term t) const {
     if (t == term::play) return f.model.play / 2;
-    if (t == term::delay || t == term::first_order)
-        return std::abs(f.model.late(t) - described_.late(t)) * r_.speed();
+    if (t == term::delay || t == term::first_order) {
+        double late = f.model.late(t);
+        for (std::size_t j = 0; j < f.of.size(); ++j)
+            if (f.of[j] == t) late += f.values[static_cast<Eigen::Index>(j)];
+        return std::abs(late - described_.late(t)) * r_.speed();
+    }
     if (t == term::rate) { // how far what is asked runs away
         const auto free = r_.first();
         const auto held = at_most_as_fast(free, f.model.rate * r_.of().period);

@@ -28,6 +28,7 @@ QUADRANT_DIAGNOSIS_DECL bool inside_tolerance(const axis_description& axis, cons
 
 QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> term_values::of(term t) const {
     const double half_a_count = d_.readings.count() / 2;
+    const double at_once = 1e-3 * d_.readings.period; // no row shows less
     const auto at = places(t);
     const link_model& m = f_.model;
     switch (t) {
@@ -40,11 +41,11 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> term_values::of(term t) 
             {"drive.setpoint_rate_limit_m_per_s", {with_interval(found / unit, deviation(at[0]) / unit, 0)}}};
     }
     case term::delay:
-        return {{"drive.command_delay_s", {with_interval(m.delay + value(at[0]), deviation(at[0]), 0)}}};
+        return {{"drive.command_delay_s",
+                 {with_interval(std::max(m.delay + value(at[0]), at_once), deviation(at[0]), 0)}}};
     case term::first_order: {
-        const estimate lag = with_interval(std::max(m.lag + value(at[0]), 0.05 * m.lag), deviation(at[0]), 0);
-        return {{"drive.position_gain_per_s",
-                 {{1 / lag.value, 1 / lag.high, 1 / std::max(lag.low, 1e-3 * lag.value)}}}};
+        const estimate lag = with_interval(std::max(m.lag + value(at[0]), at_once), deviation(at[0]), 0);
+        return {{"drive.position_gain_per_s", {{1 / lag.value, 1 / lag.high, 1 / std::max(lag.low, at_once)}}}};
     }
     case term::scale:
         return scale(at[0]);

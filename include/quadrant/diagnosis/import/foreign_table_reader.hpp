@@ -96,6 +96,7 @@ private:
         while (next()) {
             const auto& cells = lines_.cells();
             if (!layout_.end.empty() && lines_.begins_with(layout_.end)) break;
+            if (scope_ && out_.line.empty() && lines_.current().starts_with('#')) continue;
             if (out_.line.empty()) { // units, types and the like stand between the names and the rows
                 double number = 0;
                 const std::size_t look = out_.columns.empty() ? 0 : out_.columns.front().index;

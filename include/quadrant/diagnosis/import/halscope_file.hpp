@@ -13,7 +13,7 @@ namespace quadrant::inline v0::diagnosis::detail {
 /// The head of a file that halscope of LinuxCNC saved: the period, then the names of the channels. Up to
 /// LinuxCNC 2.8 each row has name and value of every channel in turns, with the decimal sign of the user's
 /// language, and one row more than was sampled; from 2.9 on the names stand once, above columns with ';'
-/// between them.
+/// between them, and newer ones write how the channels were drawn below the names, behind a '#'.
 struct halscope_file {
     double period_s = 0;
     bool in_turns = true;
@@ -21,7 +21,7 @@ struct halscope_file {
 
     static import_map::layout layout_of(import_map::layout out, std::string_view text) {
         const std::string_view rows = text.substr(std::min(text.find('\n'), text.size()));
-        out.separator = rows.find(';') == rows.npos ? ' ' : ';';
+        out.separator = text.starts_with('#') ? ';' : ' ';
         out.decimal = out.separator == ' ' && rows.find(',') != rows.npos ? ',' : '.';
         return out;
     }
@@ -43,10 +43,12 @@ struct halscope_file {
             return std::nullopt;
         out.period_s *= 1e-9;
         out.in_turns = layout.separator == ' ';
-        while (lines.next())
-            if (!lines.blank()) break;
-        for (std::size_t i = 0; i < lines.cells().size(); i += out.in_turns ? 2 : 1)
-            out.names.emplace_back(lines.cells()[i].text);
+        while (lines.next()) {
+            if (lines.blank()) continue;
+            for (std::size_t i = 0; i < lines.cells().size(); i += out.in_turns ? 2 : 1)
+                out.names.emplace_back(lines.cells()[i].text);
+            break;
+        }
         return out;
     }
     /// Place of a channel's value in a row.

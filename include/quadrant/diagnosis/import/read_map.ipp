@@ -54,19 +54,19 @@ private:
         return std::any_of(node.begin(), node.end(), [](const auto& inner) { return names_a_column(inner); });
     }
     void read_layout(const json_node& node, import_map::layout& out) {
+        if (const auto given = node.find("layout")) {
+            if (given->text() != "halscope") given->refuse("must be \"halscope\", or left out");
+            out.halscope = true;
+        }
         if (const auto given = node.find("separator")) out.separator = separator(*given);
         if (const auto given = node.find("decimal")) {
             if (given->text() != "." && given->text() != ",") given->refuse("must be \".\" or \",\"");
             out.decimal = given->text()[0];
         }
-        if (out.decimal == ',' && out.separator == ',' && !node.find("layout"))
+        if (out.decimal == ',' && out.separator == ',' && !out.halscope)
             node.need("decimal").refuse("cannot be the separator of the columns too");
         if (const auto given = node.find("header")) read_header(*given, out);
         if (const auto given = node.find("end")) out.end = given->text();
-        if (const auto given = node.find("layout")) {
-            if (given->text() != "halscope") given->refuse("must be \"halscope\", or left out");
-            out.halscope = true;
-        }
         if (const auto given = node.find("time")) read_time(given->object(), out);
     }
     static char separator(const json_node& node) {

@@ -76,10 +76,12 @@ public:
     }
 
 private:
-    /// A row's command acts after its delay, and is then its mean until the next row.
+    /// A row's command acts after its delay, and is then its mean until the next row. What was measured acts.
     axis_regression regressed_from(const axis_log& log) const {
-        const double period = text_.period(), late = 0.5 * period + asked("delay").value_or(0);
-        return regress(read_earlier(log, -late, period), period);
+        const double period = text_.period();
+        if (log.command_is != command_origin::asked || ask_.command_is != command_origin::asked)
+            return regress(log, period);
+        return regress(read_earlier(log, -0.5 * period - asked("delay").value_or(0), period), period);
     }
     std::string missing(const std::string& unit, const std::optional<double>& mass,
                         const std::optional<double>& constant, const axis_regression& found) const {

@@ -57,8 +57,8 @@ QUADRANT_DIAGNOSIS_DECL bool contains(const candidate& model, const candidate& o
 
 /// Force that takes `before` to `after`, in energy.
 QUADRANT_DIAGNOSIS_DECL double between(double before, double after);
-/// The least force that the calibrated machine, or a model with causes found before cause number `which` alone,
-/// leaves: what a name takes off of what another one put on is not explained by it.
+/// The least force that the calibrated machine and the models on the way to cause number `which` leave: what a
+/// name takes off of what another one put on is not explained by it.
 template <typename Force> double least_before(const axis_case& c, std::size_t which, const Force& force) {
     double out = force(c.path.front());
     for (std::size_t i = 1; i <= which; ++i) out = std::min(out, force(c.path[i]));
