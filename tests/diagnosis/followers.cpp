@@ -38,8 +38,8 @@ std::string milled() {
     for (int k = 0; k < 100000; ++k) {
         if (k % 700 == 0) wanted = (asked > 0 ? -1 : 1) * (k % 1400 == 0 ? 0.048 : 0.005 + 0.03 * u(random));
         speed += std::clamp(wanted - speed, -0.5 * h, 0.5 * h);
-        asked += speed * h;
         reached += h / lag * (asked - reached);
+        asked += speed * h;
         if (k % 100) continue;
         char row[80];
         std::snprintf(row, sizeof row, "%.6f,%.4f,%.4f\n", k * h, asked, reached);

@@ -33,11 +33,11 @@ struct answer {
 /// scatter in a bin makes [m^2].
 QUADRANT_DIAGNOSIS_DECL double left_along(const readings& r, const fitted& f);
 
-/// Finds the terms of a link: greedy, with every earlier term tried again, as the search among the causes of a
-/// force.
 /// Times noise and rounding: from there on what is left of a difference of two readings is a gap.
 inline constexpr double near_rounding = 1.5;
 
+/// Finds the terms of a link: greedy, with every earlier term tried again, as the search among the causes of a
+/// force.
 class seeker {
 public:
     /// `excluded`: terms that the owner says cannot be. They join a model like the others, so that no other
