@@ -145,6 +145,10 @@ TEST_CASE("apply: a number that a cause gave is not written over by where calibr
     // A cause that is not sure enough to be written leaves its number to calibration.
     d.causes[0].probability = d.causes[0].group_probability = 0.6;
     CHECK(applied(d, 0.9).machine["axes"]["x"]["plant"]["mass_kg"] == 357);
+    // So does an effect of one's own, which has no key in the file.
+    d.causes[0].probability = d.causes[0].group_probability = 0.9;
+    d.own_effects = {d.causes[0].effect};
+    CHECK(applied(d).machine["axes"]["x"]["plant"]["mass_kg"] == 357);
 }
 
 TEST_CASE("apply: the excess of static friction stays when the Coulomb level moves, as in the model that was "

@@ -409,6 +409,18 @@ TEST_CASE("import: halscope of LinuxCNC 2.9 names its channels once, and samples
     CHECK(import_log(alone, "# Sampling period is 2000000 ns\na\n0.1\n0.2\n0.4\n", "a.csv").log.samples == 3);
 }
 
+TEST_CASE("import: an angle of one turn goes on where rows are missing") {
+    std::string text = "t,q,u\n";
+    for (int k = 0; k < 600; ++k)
+        if (k < 200 || k > 330)
+            text += fmt::format("{:.4f},{:.6f},0\n", 0.01 * k, std::fmod(0.1 * k, 6.283185));
+    const auto map = read_import_map(R"({"schema": "quadrant.import/1", "header": "t",
+        "time": {"column": "t", "unit": "s"}, "axes": {"q": {"position": {"column": "q", "unit": "rad"},
+        "command": {"column": "u", "unit": "Nm"}}}})",
+                                     "map");
+    CHECK(told(import_log(map, text, "log.csv"), "within one turn: it goes on here"));
+}
+
 TEST_CASE("import: one number of a list that a cell holds") {
     const char* const map =
         R"({"schema": "quadrant.import/1", "header": 1, "time": {"column": "stamp", "unit": "us"},

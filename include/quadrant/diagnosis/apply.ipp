@@ -78,14 +78,13 @@ private:
     /// What calibration moved, as a cause that the file has. A number that a cause gave stands as given.
     cause calibration(const axis_result& a, const diagnosis_result& d, bool with_suspects) const {
         cause moved;
-        moved.axis = a.name;
-        moved.effect = "calibration";
-        moved.described = true;
+        moved.axis = a.name, moved.effect = "calibration", moved.described = true;
         moved.parameters =
             with_suspects && !a.calibrated_with_suspects.empty() ? a.calibrated_with_suspects : a.calibrated;
         std::erase_if(moved.parameters, [&](const parameter_estimate& p) {
-            return std::any_of(d.causes.begin(), d.causes.end(),
-                               [&](const cause& c) { return c.axis == a.name && taken(c) && gives(c, p.key); });
+            return std::any_of(d.causes.begin(), d.causes.end(), [&](const cause& c) {
+                return c.axis == a.name && gives(c, p.key) && left_out(c, d).empty();
+            });
         });
         return moved;
     }

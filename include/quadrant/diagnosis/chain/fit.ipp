@@ -42,7 +42,7 @@ inline void score_by_folds(fitted& out, const equations& q, const std::vector<no
 inline void hold_at_zero(std::vector<normal_equations>& piece, const equations& q, const link_model& m,
                          const Eigen::VectorXd& values, const Eigen::VectorXd& unit) {
     for (std::size_t j = 0; j < q.of.size(); ++j) {
-        if (q.of[j] != term::delay && q.of[j] != term::first_order) continue;
+        if (!q.of[j] || !of_lateness(*q.of[j])) continue;
         const auto i = static_cast<Eigen::Index>(j);
         const double to_zero = -m.late(*q.of[j]);
         if (!(values[i] < to_zero)) continue;
@@ -131,7 +131,7 @@ QUADRANT_DIAGNOSIS_DECL fitted settled(const readings& r, fitted f) {
                 next.rate = std::max(next.rate + by, 0.05 * next.rate);
                 change = std::max(change, std::abs(by) / std::max(next.rate, 1e-300));
             }
-            if ((f.of[j] == term::delay || f.of[j] == term::first_order) && first_of_its_term) {
+            if (f.of[j] && of_lateness(*f.of[j]) && first_of_its_term) {
                 double& late = next.late(*f.of[j]);
                 late = std::max(late + by, 0.0);
                 change = std::max(change, std::abs(by) / std::max(late, 1e-3 * r.of().period));

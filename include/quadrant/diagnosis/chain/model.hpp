@@ -30,6 +30,9 @@ inline constexpr std::array all_terms{term::rate,   term::delay, term::first_ord
                                       term::play,   term::pitch, term::smooth,      term::cyclic,
                                       term::spring, term::steps, term::drift,       term::motor_friction};
 
+/// Whether a term is a time by which what was asked is followed later.
+constexpr bool of_lateness(term t) { return t == term::delay || t == term::first_order; }
+
 /// The effect that a term is, by its name in the list; empty: no name.
 constexpr std::string_view name_of(term t) {
     switch (t) {

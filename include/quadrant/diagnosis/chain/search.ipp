@@ -51,14 +51,14 @@ QUADRANT_DIAGNOSIS_DECL std::vector<fitted> seeker::with_each(const fitted& best
 }
 
 QUADRANT_DIAGNOSIS_DECL fitted seeker::from_several(const fitted& given) const {
-    constexpr std::size_t ways = 3, seconds = 2;
+    constexpr std::size_t ways = 3, beside_each = 2;
     fitted best = given;
     auto first = with_each(given);
     first.resize(std::min(first.size(), ways), given);
     for (const fitted& way : first) {
         if (value(way) > value(best)) best = way;
         auto second = with_each(way);
-        second.resize(std::min(second.size(), seconds), given);
+        second.resize(std::min(second.size(), beside_each), given);
         for (fitted& next : second)
             if (fitted end = to_the_end(way, std::move(next)); value(end) > value(best)) best = std::move(end);
     }
@@ -98,7 +98,7 @@ QUADRANT_DIAGNOSIS_DECL bool seeker::pays(const fitted& with, const fitted& with
 
 QUADRANT_DIAGNOSIS_DECL double seeker::half_range(const fitted& f, term t) const {
     if (t == term::play) return f.model.play / 2;
-    if (t == term::delay || t == term::first_order) {
+    if (of_lateness(t)) {
         double late = f.model.late(t);
         for (std::size_t j = 0; j < f.of.size(); ++j)
             if (f.of[j] == t) late += f.values[static_cast<Eigen::Index>(j)];
@@ -164,7 +164,7 @@ QUADRANT_DIAGNOSIS_DECL fitted seeker::joined(const fitted& from, const fitted& 
     link_model m = from.model;
     m.freed.push_back(t);
     if (t == term::play) m.play = best.model.play;
-    if (t == term::delay || t == term::first_order) m.late(t) = best.model.late(t);
+    if (of_lateness(t)) m.late(t) = best.model.late(t);
     if (t == term::rate) m.rate = best.model.rate;
     if (t == term::pitch)
         m.pitch_period = best.model.pitch_period, m.pitch_harmonics = best.model.pitch_harmonics;

@@ -216,7 +216,7 @@ QUADRANT_DIAGNOSIS_DECL fitted without_term(const readings& r, const fitted& fro
     link_model m = from.model;
     std::erase(m.freed, t);
     if (t == term::play) m.play = described.play;
-    if (t == term::delay || t == term::first_order) m.late(t) = described.late(t);
+    if (of_lateness(t)) m.late(t) = described.late(t);
     if (t == term::rate) m.rate = described.rate;
     if (t == term::motor_friction) m.motor_coulomb = described.motor_coulomb;
     if (t == term::steps) m.steps.clear();

@@ -191,8 +191,8 @@ QUADRANT_DIAGNOSIS_DECL first_look::first_look(const fitter& fit, const candidat
         for (std::size_t i = 0; i < resumed_from.size(); ++i) {
             // The effect's own parameters replace the described ones.
             const parameter& q = resumed_from[i];
-            const auto is_it = [&](const parameter& p) { return &p.of(plant) == &q.of(plant); };
-            if (std::none_of(start.begin(), start.end(), is_it) && !detail::gives_way_to_constant(q, plant, start))
+            const auto its = [&](const parameter& p) { return &p.of(plant) == &q.of(plant); };
+            if (std::none_of(start.begin(), start.end(), its) && !detail::gives_way_to_constant(q, plant, start))
                 ps.push_back(q), known.which.push_back(i);
         }
         const std::size_t own = ps.size();
