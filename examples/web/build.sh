@@ -11,14 +11,19 @@ page=${1:-$build/quadrant.html}
 here=$root/examples/web
 dygraphs=/usr/share/javascript/dygraphs
 
-sh "$root/examples/install.sh" emscripten node-acorn cmake python3 libboost-dev libeigen3-dev nlohmann-json3-dev libfmt-dev libjs-dygraphs
+sh "$root/examples/install.sh" emscripten node-acorn cmake python3 libboost-dev libeigen3-dev nlohmann-json3-dev libfmt-dev libxsimd-dev libjs-dygraphs
 command -v em++ >/dev/null || { echo "no em++: install emscripten" >&2; exit 77; }
 mkdir -p "$build/include" "$(dirname "$page")"
 
 # The system's headers-only libraries, without the system's C library.
-for library in boost eigen3/Eigen nlohmann fmt; do
+for library in boost eigen3/Eigen nlohmann fmt xsimd; do
     ln -sfn "/usr/include/$library" "$build/include/${library##*/}"
 done
+# Two numbers a register: emscripten's headers for the names of SSE4.1, which Debian's Clang would take its own for.
+for header in "$(em-config EMSCRIPTEN_ROOT)"/system/include/compat/*mmintrin.h; do
+    ln -sfn "$header" "$build/include/${header##*/}"
+done
+: >"$build/include/mmintrin.h" # what came before SSE, emscripten does not have
 cmake "-DOUT=$build/include/report_files.hpp" -DNAMESPACE=quadrant_gap \
     "-DFILES=$root/examples/programs/quadrant_gap/report_template.html;$root/examples/programs/quadrant_gap/report.css;$root/examples/programs/quadrant_gap/report.js;$dygraphs/dygraph.min.js;$dygraphs/dygraph.min.css" \
     -P "$root/examples/programs/page/embed.cmake"
@@ -26,8 +31,8 @@ cmake "-DOUT=$build/include/report_files.hpp" -DNAMESPACE=quadrant_gap \
 # One file each, as many at once as there are cores; what did not change comes from the compiler cache, where there is one.
 ! command -v ccache >/dev/null || export EM_COMPILER_WRAPPER="${EM_COMPILER_WRAPPER-ccache}"
 version=$(awk '/^#define QUADRANT_VERSION_/ { v = v (v == "" ? "" : ".") $3 } END { print v }' "$root/include/quadrant/base/version.hpp")
-flags="-std=c++20 -O2 -fwasm-exceptions -ffp-contract=off -DNDEBUG -DFMT_HEADER_ONLY -DQUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
-    -DQUADRANT_VERSION=\"$version\" -I$root/include -I$root/examples -I$root/examples/programs -I$build/include"
+flags="-std=c++20 -O2 -msimd128 -msse4.1 -fwasm-exceptions -ffp-contract=off -DNDEBUG -DEIGEN_DONT_VECTORIZE -DFMT_HEADER_ONLY -DQUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+    -DQUADRANT_VERSION=\"$version\" -I$root/include -I$root/examples -I$root/examples/programs -isystem $build/include"
 # A file for each folder of the diagnosis, and for each call with the folder of its parts.
 rm -f "$build"/part_*
 parts=$(cd "$root/include/quadrant/diagnosis" && find . -name '*.ipp' | sed 's|^\./||; s|\.ipp$||' | sort)
@@ -43,6 +48,6 @@ printf '%s\n' "$@" | xargs -P "$(nproc 2>/dev/null || echo 2)" -I '{}' em++ $fla
 cd "$build"
 em++ -O2 -fwasm-exceptions $(printf '%s.o ' "$@") -o quadrant.js --no-entry \
     -s MODULARIZE=1 -s EXPORT_NAME=quadrant_module -s ENVIRONMENT=worker -s ALLOW_MEMORY_GROWTH=1 -s FILESYSTEM=0 \
-    -s DYNAMIC_EXECUTION=0 -s TOTAL_STACK=2MB -s "EXPORTED_FUNCTIONS=_malloc,_free" \
+    -s DYNAMIC_EXECUTION=0 -s TOTAL_STACK=8MB -s "EXPORTED_FUNCTIONS=_malloc,_free" \
     -s "EXPORTED_RUNTIME_METHODS=UTF8ToString,stringToUTF8,lengthBytesUTF8"
 python3 "$here/bundle.py" "$here" "$build" "$version" "$page"

@@ -105,4 +105,15 @@ TEST_CASE("observed_count: of an axis that is fast in nearly all rows it is the 
     }
     CHECK(observed_count(fast, 1e-10) == doctest::Approx(6.283185e-4).epsilon(1e-3));
     CHECK(observed_count(rounded, 1e-6) == 1e-6);
+    // Rows a little early and late of an axis that starts: any difference is near some last digits.
+    std::vector<double> jittered;
+    std::normal_distribution<double> late(0, 3e-5);
+    for (int k = 0; k < 4000; ++k) {
+        const double t = 1e-3 * k + late(random);
+        jittered.push_back(1e-5 * std::round(0.2 * t * t / 1e-5));
+    }
+    CHECK(observed_count(jittered, 1e-5) == doctest::Approx(1e-5));
+    std::vector<double> thirds = jittered; // and an encoder that counts in three of them
+    for (double& x : thirds) x = 3e-5 * std::round(x / 3e-5);
+    CHECK(observed_count(thirds, 1e-5) == doctest::Approx(3e-5));
 }

@@ -47,9 +47,9 @@ TEST_CASE("effects: every record says what pages and files need, and no name or 
         CHECK((e->trial.into != nullptr) == in_trials);
         CHECK((e->trial.low < e->trial.high) == in_trials);
         for (const auto other : e->equivalent) CHECK((other.empty() || effect_named(other) != nullptr));
-        if (!e->ends_inside.empty())
-            CHECK(std::any_of(e->keys.begin(), e->keys.end(),
-                              [&](const machine_key& k) { return k.name == e->ends_inside; }));
+        for (const auto inside : e->ends_inside)
+            CHECK((inside.empty() || std::any_of(e->keys.begin(), e->keys.end(),
+                                                 [&](const machine_key& k) { return k.name == inside; })));
         for (const machine_key& k : e->keys) {
             CAPTURE(k.name);
             CHECK(keys.insert(k.name).second);

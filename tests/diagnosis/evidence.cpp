@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "claims.hpp"
 #include "quadrant/diagnosis/effect/effects.hpp"
+#include "quadrant/diagnosis/text/bad_input.hpp"
 #include "quadrant/diagnosis/which/causes.hpp"
 
 #include <doctest/doctest.h>
@@ -107,6 +108,22 @@ TEST_CASE("chance: two rare effects must bring more than two common ones") {
           doctest::Approx(d::rarity({&suspect::actuator_dead_zone}) + d::rarity({&suspect::sample_loss})));
 }
 
+TEST_CASE("chance: a value whose interval reaches the number that does nothing is no claim") {
+    using quadrant::diagnosis::detail::may_be_nothing;
+    const auto one = [](const char* key, double value, double half) {
+        return std::vector{parameter_estimate{.key = key, .values = {{value, value - half, value + half}}}};
+    };
+    CHECK(may_be_nothing(one("coulomb_N", 10, 10)));
+    CHECK_FALSE(may_be_nothing(one("coulomb_N", 10, 9)));
+    CHECK(may_be_nothing(one("constant_force_N", -1, 2)));
+    CHECK_FALSE(may_be_nothing(one("actuator.drive_limit_V", 3, 3))); // no limit is infinite
+    auto wave = one("cogging_period_m", 0.02, 0.001);
+    wave.push_back({.key = "cogging_N", .values = {{1, -1, 3}, {3, 2, 4}}}); // one sure harmonic is enough
+    CHECK_FALSE(may_be_nothing(wave));
+    wave.back().values.back().low = -1;
+    CHECK(may_be_nothing(wave));
+}
+
 TEST_CASE("process: a period with which the motion repeats tells nothing of a process") {
     std::vector<double> strokes;
     for (int k = 0; k < 8000; ++k) strokes.push_back(std::abs(k % 1000 - 500)); // there and back in 1000 rows
@@ -159,4 +176,35 @@ TEST_CASE("evidence: each direction has its own friction inside the tolerance, a
     REQUIRE(d.causes.size() == 1);
     CHECK((d.causes[0].effect == "constant_force" || d.causes[0].effect == "asymmetric_friction"));
     CHECK(d.causes[0].group_probability >= 0.9);
+}
+
+TEST_CASE("evidence: steps of the last digit that the log has are a suspect, and say nothing of the encoder") {
+    const workshop::machine real;
+    auto file = workshop::described(real);
+    file.axes[0].encoder.resolution_m = workshop::count / 8;
+    auto log = workshop::as_log(workshop::run(real, workshop::three_strokes));
+    log.axes[0].position_step = workshop::count;
+    const auto d = diagnose(file, log);
+    CAPTURE(workshop::said(d));
+    CHECK(workshop::claims(d).empty());
+    CHECK(std::any_of(d.notes.begin(), d.notes.end(), [](const std::string& note) {
+        return note.find("steps of 2.5e-07 m, the last digit of the log, and 3.12e-08 m are described") !=
+               note.npos;
+    }));
+}
+
+TEST_CASE("evidence: of a record in pieces of which one alone is long enough to judge nothing is said") {
+    const workshop::machine real;
+    const auto file = workshop::described(real);
+    auto log = workshop::as_log(workshop::run(real, 8.15));
+    std::vector<unsigned char>& out = log.axes[0].left_out;
+    out.assign(log.samples, 0);
+    for (std::size_t k = 300; k < out.size(); ++k) out[k] = k % 120 >= 30;
+    try {
+        diagnose(file, log);
+        FAIL("it was diagnosed");
+    } catch (const bad_input& e) {
+        CHECK(std::string(e.what()).find("pieces, the longest of 300 (import with a longer") !=
+              std::string::npos);
+    }
 }

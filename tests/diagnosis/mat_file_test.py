@@ -39,6 +39,12 @@ def text_variable(name, kind=CHAR):
     return element("<", 14, b"".join(parts))
 
 
+def object_variable(name):
+    """An object of a class, as MATLAB saves it: no dimensions, then the name, its system and its class."""
+    parts = [element("<", 6, struct.pack("<II", 17, 0))] + [element("<", 1, part) for part in (name.encode(), b"MCOS", b"SerialLink")]
+    return element("<", 14, b"".join(parts))
+
+
 def mat(variables, packed=False, order="<", text=b"MATLAB 5.0 MAT-file, Platform: GLNXA64", version=0x0100):
     head = text.ljust(124, b" ") + struct.pack(order + "H", version) + (b"IM" if order == "<" else b"MI")
     if packed:
@@ -55,7 +61,7 @@ def motion(rows=400):
 
 def record(order="<", row=False):
     t, ref, pos, u = motion()
-    return [text_variable("note"), variable("gain", [[3.0]], order=order), variable("t_s", [t], order=order, row=row),
+    return [object_variable("arm"), text_variable("note"), variable("gain", [[3.0]], order=order), variable("t_s", [t], order=order, row=row),
             variable("x_ref_m", [ref], order=order), variable("x_pos_m", [pos], order=order), variable("x_cmd_V", [u], order=order)]
 
 

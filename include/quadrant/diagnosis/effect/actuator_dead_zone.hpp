@@ -13,7 +13,7 @@ inline constexpr effect actuator_dead_zone{
     .box = "actuator",
     .joins = joint::command,
     .exciting_motion = "slow reversals beside accelerations in which the command changes its sign in motion",
-    .ends_inside = "actuator.dead_zone_V", // so wide that little of the command passes, it is none
+    .ends_inside = {"actuator.dead_zone_V"}, // so wide that little of the command passes, it is none
     .shows = "when the command changes its sign",
     .keys = {machine_key{.name = "actuator.dead_zone_V",
                          .rule = detail::rule::not_negative,

@@ -12,7 +12,7 @@ inline constexpr effect actuator_lag{
     .box = "actuator",
     .joins = joint::command,
     .exciting_motion = "multi-sine of 20 to 300 Hz, or sharp starts and stops",
-    .ends_inside = "actuator.lag_s", // so long that little of the command passes, it is none
+    .ends_inside = {"actuator.lag_s"}, // so long that little of the command passes, it is none
     .shows = "phase that bends, amplitude that falls",
     .keys = {machine_key{.name = "actuator.lag_s",
                          .rule = detail::rule::up_to_a_second,

@@ -12,7 +12,7 @@ inline constexpr effect actuator_saturation{
     .box = "actuator",
     .joins = joint::command,
     .exciting_motion = "the strongest acceleration that the program uses, and half of it",
-    .ends_inside = "actuator.drive_limit_V", // so low that little of the command passes, it is none
+    .ends_inside = {"actuator.drive_limit_V"}, // so low that little of the command passes, it is none
     .shows = "only while the command is large",
     .keys = {machine_key{.name = "actuator.drive_limit_V",
                          .rule = detail::rule::positive,

@@ -13,7 +13,7 @@ inline constexpr effect drive_limit{
     .joins = joint::command,
     .exciting_motion = "the strongest acceleration that the program uses, and half of it",
     .equivalent = {"actuator_saturation"},
-    .ends_inside = "drive.force_limit_N", // so low that little of the force is left, it is none
+    .ends_inside = {"drive.force_limit_N"}, // so low that little of the force is left, it is none
     .shows = "only while the error inside the drive is large",
     .keys = {machine_key{.name = "drive.force_limit_N",
                          .rule = detail::rule::positive,

@@ -34,8 +34,8 @@ struct effect {
     std::array<std::string_view, 3> equivalent{};
     /// An effect that this one holds as a part: no second name for it.
     std::string_view holds{};
-    /// A key whose value says that it is another effect where it ends at the end of what is searched: no claim.
-    std::string_view ends_inside{};
+    /// Keys whose value says that it is another effect where it ends at the end of what is searched: no claim.
+    std::array<std::string_view, 2> ends_inside{};
     /// Every axis has some of it: effects of this kind are tried together from the start, as in a linear
     /// regression.
     bool everyday = false;

@@ -58,7 +58,8 @@ inline constexpr effect structural_resonance{
     .box = "mechanics",
     .joins = joint::transmission,
     .exciting_motion = "multi-sine of 10 to 300 Hz, or a chirp through the suspected frequency",
-    .ends_inside = "mode_damping", // damped as far as is searched, it does not ring
+    // damped as far as is searched, or as slow, it does not ring
+    .ends_inside = {"mode_damping", "mode_frequency_Hz"},
     .shows = "ringing, a phase that turns twice",
     .keys = {machine_key{.name = "mode_mass_kg",
                          .rule = detail::rule::positive,

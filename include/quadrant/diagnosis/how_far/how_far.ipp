@@ -56,7 +56,10 @@ QUADRANT_DIAGNOSIS_DECL bool how_far::surely_shrinks(const candidate& from, cons
     const segment_energy before = energy(force(from)), after = energy(force(to));
     const double floor = case_.floor_force(); // motions that show nothing speak for and against nothing
     const auto taken = [&](const auto& w) { return std::hypot(before.rms(w), floor) - after.rms(w); };
-    return resampled(draws_, judged_.segments, taken).low > 0;
+    const auto plainly = [&](const auto& w) { return before.rms(w) - after.rms(w); };
+    const estimate shrinks = resampled(draws_, judged_.segments, plainly);
+    // Where motions lose by it half as much as others gain, it takes nothing off, however far above the floor.
+    return resampled(draws_, judged_.segments, taken).low > 0 && shrinks.high > -2 * shrinks.low;
 }
 
 QUADRANT_DIAGNOSIS_DECL plant_model how_far::plant_of(const candidate& model) const {

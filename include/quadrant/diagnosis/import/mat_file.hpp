@@ -139,7 +139,7 @@ private:
         return b << 16 | a;
     }
 
-    /// A variable of real numbers; texts, structures and cells are left out, and so is a single number.
+    /// A variable of real numbers; not texts, structures, cells and objects, nor a single number.
     void read_variable(const element& whole) {
         const std::size_t behind = at_;
         at_ = whole.at;
@@ -147,7 +147,8 @@ private:
         if (flags.type != 6 || flags.size != 8) refuse(whole.at, "a variable begins with its flags (8 bytes)");
         const auto word = integer<std::uint32_t>(flags.at);
         const std::uint32_t kind = word & 0xff;
-        const bool complex = word & 0x0800;
+        constexpr std::uint32_t of_doubles = 6, last = 15, opaque = 17;
+        if (kind == opaque) return void(at_ = behind); // an object of a class has no dimensions
         const element dimensions = next();
         if (dimensions.type != 5 || dimensions.size < 8 || dimensions.size % 4 != 0)
             refuse(dimensions.at, "the dimensions of a variable are 32-bit integers, two or more");
@@ -155,7 +156,6 @@ private:
         variable v{
             .name = std::string(bytes_.substr(name.at, name.size)), .rows = 1, .columns = 1, .values = {}};
         if (const auto end = v.name.find('\0'); end != v.name.npos) v.name.resize(end);
-        constexpr std::uint32_t of_doubles = 6, last = 15;
         if (kind >= of_doubles && kind <= last) {
             for (std::size_t k = 0; k < dimensions.size / 4; ++k) {
                 const auto n = integer<std::int32_t>(dimensions.at + 4 * k);
@@ -166,7 +166,7 @@ private:
                     (v.columns > 0 && v.rows > bytes_.size() / v.columns))
                     refuse(dimensions.at, fmt::format("{}: has more numbers than the file has bytes", v.name));
             }
-            if (complex)
+            if (word & 0x0800)
                 refuse(whole.at, fmt::format("{}: is complex: save its real and imaginary part apart", v.name));
             read_numbers(v);
             if (at_ > behind) refuse(whole.at, fmt::format("{}: holds more data than its size allows", v.name));
@@ -241,7 +241,7 @@ private:
 inline bool is_mat_file(std::string_view bytes) { return detail::mat_reader::is_one(bytes); }
 
 /// The vectors and matrices of a MAT-file (level 5, also compressed) as a table of text whose first line names
-/// the variables: what import_log reads. Single numbers, texts, structures and cells are left out. Refuses
+/// the variables: what import_log reads; not single numbers, texts, structures, cells and objects. Refuses
 /// other levels, complex numbers, and a damaged file with its byte (bad_input).
 inline std::string table_of_mat_file(std::string_view bytes, std::string_view file) {
     return detail::mat_reader(bytes, file).take();

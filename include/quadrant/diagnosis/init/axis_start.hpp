@@ -49,7 +49,7 @@ protected:
     void read_count(const axis_log& log) {
         const double count = observed_count(log.position, log.position_step);
         const double written = std::round(count * 1e12) / 1e12; // no rounding of the file is a count
-        if (!asked("resolution") && written > 0) {
+        if (!asked("resolution") && written > 1.01 * log.position_step) {
             const init_field& f = field("resolution");
             put(f, f.key, written, "smallest step of the position in the log");
         }

@@ -17,10 +17,12 @@ inline double observed_count(std::span<const double> position, double rounding) 
     if (steps.empty()) return 0;
     std::sort(steps.begin(), steps.end());
     const auto multiples = [&](double count) { // in rows, and in differences of different size
+        // Any size is near a multiple of a few roundings: there exact multiples alone count.
+        const double near = 0.1 * count + (rounding < 0.15 * count ? rounding : 0);
         std::size_t rows = 0, sizes = 0, all = 0;
         double before = 0;
         for (const double d : steps) {
-            const bool one = std::abs(d - std::round(d / count) * count) <= rounding + 0.1 * count;
+            const bool one = std::abs(d - std::round(d / count) * count) <= near;
             if (one) ++rows;
             if (d - before <= rounding) continue;
             before = d;
@@ -31,10 +33,9 @@ inline double observed_count(std::span<const double> position, double rounding) 
         return 10 * rows >= 9 * steps.size() && 2 * sizes >= all;
     };
     // The smallest difference that occurs more than by accident, one in a thousand rows; of an axis that is
-    // fast in nearly all rows, the smallest of all, unless it is a few roundings, which any size is near to.
+    // fast in nearly all rows, the smallest of all.
     const double often = steps[steps.size() / 1000], smallest = steps.front();
-    if (multiples(often)) return often;
-    return rounding < 0.15 * smallest && multiples(smallest) ? smallest : rounding;
+    return multiples(often) ? often : multiples(smallest) ? smallest : rounding;
 }
 
 } // namespace quadrant::inline v0::diagnosis

@@ -40,6 +40,17 @@ inline void note_above_band(diagnosis_result& out, const axis_case& c) {
                                         c.axis.name, 100 * share, r.bandwidth_Hz));
 }
 
+/// Positions whose steps are those of the log's last digit.
+inline void note_digits(diagnosis_result& out, const axis_case& c) {
+    if (c.coarse() && c.counts_digits())
+        out.notes.push_back(text_of(
+            fmt::format(
+                "axis {}: the positions are written in steps of {:.3g} m, the last digit of the log, and "
+                "{:.3g} m are described: write more digits, or nothing says what the encoder counts in.",
+                c.axis.name, c.count, c.axis.encoder.resolution_m),
+            c.axis.kind));
+}
+
 /// A controller whose integral is not limited as the file's kind limits it.
 inline void note_limit(diagnosis_result& out, const axis_case& c) {
     if (c.controller && c.controller->limits_otherwise_from)

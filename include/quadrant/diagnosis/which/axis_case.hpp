@@ -80,6 +80,9 @@ public:
     /// be wrong.
     std::optional<tap_reading> other_tap() const;
     bool coarse() const { return axis.encoder.resolution_m > 0 && count > 1.5 * axis.encoder.resolution_m; }
+    /// Whether the steps of the reading are those of the last digit that is written: they say nothing of the
+    /// encoder.
+    bool counts_digits() const { return count < 1.01 * log.position_step; }
     /// Nothing is left that would matter: noise, or far less than the owner's tolerances make. No other cause
     /// can hide behind the names.
     bool at_floor() const { return settled && settled_on_second; }

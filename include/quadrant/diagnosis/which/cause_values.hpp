@@ -25,6 +25,10 @@ QUADRANT_DIAGNOSIS_DECL void widen(std::vector<parameter_estimate>& mine,
 /// side as the value, so that none of a shorter period is distinguished from it.
 QUADRANT_DIAGNOSIS_DECL bool is_undetermined(const std::vector<parameter_estimate>& values);
 
+/// Whether the interval of what a cause adds reaches the value at which it adds nothing: the record does not
+/// say that it is there.
+QUADRANT_DIAGNOSIS_DECL bool may_be_nothing(const std::vector<parameter_estimate>& values);
+
 } // namespace quadrant::inline v0::diagnosis::detail
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION

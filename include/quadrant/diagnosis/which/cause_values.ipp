@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../effect/effect_list.hpp"
 
 namespace quadrant::inline v0::diagnosis::detail {
 
@@ -59,6 +60,19 @@ QUADRANT_DIAGNOSIS_DECL bool is_undetermined(const std::vector<parameter_estimat
         const bool cycle = p.key.find("frequency") != p.key.npos || p.key.find("period") != p.key.npos;
         return cycle && p.values[0].high - p.values[0].low > 2 * p.values[0].value;
     });
+}
+
+QUADRANT_DIAGNOSIS_DECL bool may_be_nothing(const std::vector<parameter_estimate>& values) {
+    const auto is_size_of_wave = [](const parameter_estimate& p) {
+        const machine_key* key = key_named(p.key);
+        return key && !key->components.empty();
+    };
+    auto size = std::find_if(values.begin(), values.end(), is_size_of_wave);
+    if (size == values.end()) size = values.begin();
+    const machine_key* key = key_named(size->key);
+    return key && std::all_of(size->values.begin(), size->values.end(), [&](const estimate& value) {
+               return value.low <= key->neutral && key->neutral <= value.high;
+           });
 }
 
 } // namespace quadrant::inline v0::diagnosis::detail

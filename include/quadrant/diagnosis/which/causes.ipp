@@ -38,7 +38,8 @@ inline bool is_no_claim(const axis_case& c, const effect& e, const cause& named,
            may_be_inside_its_tolerance(c, named.parameters) || drowns_in_the_rest(c, e) ||
            is_as_described(named, e, as_given) || lies_beyond(named, c.best()) || late_velocity(c, named) > 0 ||
            repeats_with_the_motion(c.record, named) ||
-           (!e.ends_inside.empty() && c.best().ends_at_a_bound(e.ends_inside));
+           std::any_of(e.ends_inside.begin(), e.ends_inside.end(),
+                       [&](std::string_view key) { return !key.empty() && c.best().ends_at_a_bound(key); });
 }
 
 QUADRANT_DIAGNOSIS_DECL void to_suspects(std::span<cause> causes) {
@@ -89,8 +90,9 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
                 if (j != i && r.same && r.name != effects[j])
                     detail::widen(named.parameters, estimates(r.model, e, c.record.score));
         const bool undetermined = detail::is_undetermined(named.parameters); // by its own scatter
-        const bool either_way =
-            !named.described && detail::has_open_sign(estimates(c.best(), e, c.record.score).front());
+        const auto by_scatter = estimates(c.best(), e, c.record.score);
+        const bool may_be_absent = !named.described && (detail::has_open_sign(by_scatter.front()) ||
+                                                        detail::may_be_nothing(by_scatter));
         detail::add_model_error(named.parameters, e, c, detail::left_beside(c, i));
         // A suspect that is worth its place on held-out motion was there in one of eleven, however little spoke
         // for it (docs/trial.md).
@@ -101,7 +103,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
             (1 - detail::unknown(c, i)) * detail::against_others(c, rivals[i]) * (1 - excluded.probability);
         named.probability = std::max(least, named.probability * known);
         named.group_probability = std::max(named.probability, named.group_probability * known);
-        if (undetermined || either_way || detail::is_no_claim(c, e, named, as_given, of_laws))
+        if (undetermined || may_be_absent || detail::is_no_claim(c, e, named, as_given, of_laws))
             detail::to_suspects({&named, 1});
         out.push_back(std::move(named));
     }

@@ -6,12 +6,16 @@
 
 namespace quadrant::inline v0::diagnosis::detail {
 
-/// A record without a single block of samples to score says nothing of a model. Nothing else is too short.
+/// A record without a single block of samples to score says nothing of a model, and one in pieces of which
+/// hardly any is as long as that says it of these alone. Nothing else is too short.
 inline void need_blocks(const axis_case& c, const std::string& file) {
-    if (!c.record.score.channels.front().segment_of_block.empty()) return;
+    const channel& blocks = c.record.score.channels.front();
+    const auto scored = blocks.segment_of_block.size() * blocks.block;
+    const auto out = static_cast<std::size_t>(std::count(c.log.left_out.begin(), c.log.left_out.end(), 1));
+    if (scored > 0 && 20 * scored >= c.log.position.size() - out) return;
     std::size_t longest = 0, pieces = 0, row = 0;
-    for (const unsigned char out : c.log.left_out) {
-        row = out ? 0 : row + 1;
+    for (const unsigned char left_out : c.log.left_out) {
+        row = left_out ? 0 : row + 1;
         pieces += row == 1;
         longest = std::max(longest, row);
     }

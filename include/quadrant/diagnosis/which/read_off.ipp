@@ -15,7 +15,7 @@ QUADRANT_DIAGNOSIS_DECL std::optional<cause> count_cause(const axis_case& c) {
     out.effect = "encoder_quantization";
     out.exciting_motion = "any: the steps of the reading are counted";
     out.described = true;
-    out.probability = out.group_probability = 0.97;
+    out.probability = out.group_probability = c.counts_digits() ? 0.4 : 0.97;
     out.parameters.push_back({"encoder.resolution_m", {{c.count, c.count, c.count}}});
     return out;
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: what a name weighs beside a cause is one rule after the other.
 #pragma once
 
 namespace quadrant::inline v0::diagnosis::detail {
@@ -144,6 +145,9 @@ public:
         if (!c.settled) unexplained_ = std::max(0.0, energy_ - square(c.floor_force()));
         if (c.tested_apart()) there_ = square(c.second_log(c.best()).force);
         unexplained_there_ = there_ - square(c.floor_force());
+        if (!c.record.observer.led && !c.record.replayed() && shows_along_motion(c.best()))
+            along_ = along_motion(c.best());
+        if (!(along_ > c.limits.near_floor * c.floor_force())) along_ = 0;
     }
 
     /// Weight of a name, and whether the record distinguishes it from the `first`, the cause itself.
@@ -182,12 +186,24 @@ public:
             if (&r != &first) first.weight = std::max(first.weight, std::exp(-less) / commoner * r.weight);
         }
         if (r.of_one_speed) r.weight = commoner * first.weight;
-        r.same = !r.unlisted() &&
-                 (r.of_one_speed || within || equivalent || (pays && r.weight > 0.01 && stands_in(r, first)));
+        const bool follows = pays && &r != &first && follows_the_motion(r) && stands_in(r, first);
+        if (follows) r.weight = std::max(r.weight, commoner * first.weight);
+        r.same = !r.unlisted() && (r.of_one_speed || within || equivalent || follows ||
+                                   (pays && r.weight > 0.01 && stands_in(r, first)));
     }
 
 private:
     bool by_force(const rival& r) const { return !case_.record.closed() && !r.unlisted(); }
+    double along_motion(const candidate& m) const {
+        return case_.left_along_motion(std::span(&m.fit.plant, 1)).front();
+    }
+    /// Whether a name leaves less than half, in energy, of the forces along the measured motion that the cause
+    /// itself leaves open: predictions that are corrected by the readings, or that stand still where the axis
+    /// is slow, do not show it.
+    bool follows_the_motion(const rival& r) const {
+        return along_ > 0 && by_force(r) && shows_along_motion(r.model) &&
+               2 * square(along_motion(r.model)) < square(along_);
+    }
     double excess(const rival& r) const {
         return std::max(0.0, square(case_.models.held_out_force(r.model)) - energy_);
     }
@@ -210,7 +226,8 @@ private:
 
     const axis_case& case_;
     const effect& own_;
-    double energy_, least_, explained_, by_speed_, unexplained_ = 0, there_ = 0, unexplained_there_ = 0;
+    double energy_, least_, explained_, by_speed_, unexplained_ = 0, there_ = 0, unexplained_there_ = 0,
+                                                   along_ = 0;
     mutable std::optional<double> force_of_own_{};
 };
 

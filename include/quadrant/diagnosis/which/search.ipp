@@ -57,11 +57,31 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::run() const {
         best = *step;
         beam.assign(1, best);
     }
+    best = by_the_scale(best);
     cut_ = over();
-    // What does not take the gap of the machine file as it stands down explains nothing, however well it
-    // scores.
+    // What does not take the gap of the machine file down explains nothing, however well it scores.
     if (!best.effects.empty() && !shrinks(best, given_)) best = calibrated_;
     return path_to(best);
+}
+
+QUADRANT_DIAGNOSIS_DECL candidate search::by_the_scale(const candidate& best) const {
+    const candidate *head = nullptr, *scale = nullptr; // what the best of its names does alone
+    for (const effect* e : best.effects)
+        if (const candidate* c = alone(*e); c && (!head || c->total > head->total)) head = c;
+    for (const effect* e : suspects())
+        if (e->joins == joint::motor_gain && !is_wave(*e) && !has(best, e))
+            if (const candidate* c = alone(*e); c && (!scale || c->total > scale->total)) scale = c;
+    if (best.effects.size() < 2 || !head || !scale || scale->total < head->total - rules_.margin) return best;
+    const effect* without = head->effects.front();
+    candidate way = *scale;
+    while (way.effects.size() < best.effects.size() && !over()) {
+        std::vector<candidate> next = with_each(way);
+        std::erase_if(next, [&](const candidate& c) { return has(c, without); });
+        const candidate* step = paying(next, way);
+        if (!step) break;
+        way = *step;
+    }
+    return way.total > best.total + rules_.margin ? way : best;
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<const effect*> search::beyond_tolerance(const candidate& c) const {
