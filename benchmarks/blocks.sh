@@ -143,7 +143,7 @@ expert_text() {
 \`typed_lanes\` takes $(each_compiler time_by_expert typed_lanes) times the expert's time (the shortest of ${ROUNDS:-450} rounds of both),
 $(each_compiler median_by_expert typed_lanes) as the median of the ratios of neighbours in a round; turning round $(each_compiler time_by_expert typed_lanes/reversing),
 median $(each_compiler median_by_expert typed_lanes/reversing); without the FIR filters $(each_compiler time_by_expert typed_lanes/without_fir),
-median $(each_compiler median_by_expert typed_lanes/without_fir). There it is the work that the expert does not do: 20 wires that can be read, faults by axis,
+median $(each_compiler median_by_expert typed_lanes/without_fir). There it is the work that the expert does not do: 19 wires that can be read, faults by axis,
 and what lets states die out; the filters hide it.
 EOT
 }
@@ -249,12 +249,12 @@ in the compilers' vector extension: both axes in lanes, every FIR coefficient lo
 of 3e-13, rounding in one instruction, one range check at the inputs. It gives the same commands behind the DAC on the circle, at rest and
 turning round (looked at before anything is counted), and nothing else: no wire to look at, one set of taps for both axes, no reset, settle,
 retune, track or fade, and no protection from subnormal numbers at rest. \`typed_lanes\` has all of that, and its exponential is right to one unit in the
-last place. That is what it pays for: 20 wires and tests for what has died out. Where both axes have the same taps, each coefficient is loaded once, as
+last place. That is what it pays for: 19 wires and tests for what has died out. Where both axes have the same taps, each coefficient is loaded once, as
 the expert does; other taps are loaded for each axis. The ratio is that of the instructions to \`expert\`; \`sh benchmarks/callgrind.sh\` fails
 above 1.10, on the circle and turning round. At rest, where the expert's loop does nothing against subnormal numbers, that ratio is not asked, and
 without the FIR filters neither: there it is $(each_compiler instructions_by_expert typed_lanes/without_fir), and the code of g++ 12.2 says why. Instructions of a
 sample by kind, counted in it once by hand, the expert's in brackets: arithmetic 123 (117), loads 64 (51), stores 85 (39), comparisons and selections
-50 (25), branches 26 (9), moves, shuffles and addresses 94 (94). The stores are 20 wires that can be read after the sample, and the states of what can be
+50 (25), branches 26 (9), moves, shuffles and addresses 94 (94). The stores are 19 wires that can be read after the sample, and the states of what can be
 reset, settled and retuned; one of them is a spilled register. Selections and branches are what takes states to zero at rest. None of it can go without
 the feature that it serves, and what is above 1.10, $(each_compiler instructions_above typed_lanes/without_fir) instructions, is hidden in the whole loop beside the FIR filters.
 

@@ -10,6 +10,7 @@
 #include <quadrant/diagnosis/apply.hpp>
 #include <quadrant/diagnosis/compensate.hpp>
 #include <quadrant/diagnosis/diagnose.hpp>
+#include <quadrant/diagnosis/fit/with_drives.hpp>
 #include <quadrant/diagnosis/forecast.hpp>
 #include <quadrant/diagnosis/match.hpp>
 #include <quadrant/diagnosis/model/as_reading.hpp>
@@ -615,8 +616,15 @@ TEST_CASE(
     } catch (const bad_input& e) {
         const std::string said = e.what();
         CHECK(said.find("answers in 0.04 ms (mass_kg over velocity_gain_N_s_per_m)") != said.npos);
-        CHECK(said.find("record q_current_A or q_torque_Nm, or faster") != said.npos);
+        CHECK(said.find("record q_current_A, or faster") != said.npos);
     }
     log.axes[0].effort.assign(log.samples, 0.0);
     CHECK_NOTHROW(check_loops(fast("2.5e6"), log));
+    log.axes[0].effort_unit = "A"; // and nothing says what force it makes
+    log.notes.clear();
+    const auto notes = with_drives(fast("2.5e5"), log).notes;
+    REQUIRE(notes.size() == 1);
+    CHECK(
+        notes[0].ends_with("axis q: the current is not used: axes.q.plant.force_constant_N_per_A turns it into "
+                           "force."));
 }

@@ -96,6 +96,9 @@ TEST_CASE("read_log: the velocities of reference and axis are read; other option
     CHECK(log.notes[2] == "log.csv: column \"y_vel_m_per_s\" belongs to no axis of the log and is ignored.");
     CHECK(refusal("t_s,x_ref_m,x_pos_m,x_cmd_V,x_vel_rad_per_s\n") ==
           "log.csv:1:29: \"x_vel_rad_per_s\": axis x is linear");
+    CHECK(refusal("t_s,x_ref_m,x_pos_m,x_cmd_m,x_torque_Nm\n") ==
+          "log.csv:1:29: \"x_torque_Nm\": axis x is linear: log the motor's current (x_current_A), which "
+          "plant.force_constant_N_per_A turns into force");
 }
 
 TEST_CASE(

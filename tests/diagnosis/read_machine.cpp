@@ -418,6 +418,17 @@ TEST_CASE("read_machine: the velocity estimator is one of two") {
           "axis x: velocity_filter_Hz is not used by the velocity estimator two_sample_mean.");
 }
 
+TEST_CASE("read_machine: a chain of positions names the keys of its drive that say nothing of it") {
+    const auto chain = read_machine(
+        std::string_view(R"({"schema": "quadrant.machine/1", "sample_period_s": 0.01, "axes": {"x": {
+            "encoder": {"resolution_m": 1e-6},
+            "drive": {"command_delay_s": 0.02, "set_point_loss": 0.01, "clock_slip": 1e-4}}}})"),
+        "m");
+    CHECK(chain.notes.at(0) ==
+          "axis x: no plant is described: the axis is a chain of positions, and nothing is "
+          "said of forces; not used of drive: clock_slip, set_point_loss.");
+}
+
 TEST_CASE(
     "read_machine: without a controller, or with one of unknown kind, the axis is read and a note tells") {
     const auto absent = read_machine(without("/axes/x", "controller"), "m");

@@ -90,10 +90,11 @@ inline void check_speed_of_loop(const axis_description& axis, const machine_desc
     throw bad_input(
         whole.file,
         fmt::format("axis {0}: the velocity loop of axes.{0}.drive in {1} answers in {2:.3g} ms ({3} over "
-                    "{4}), and rows of {5:.3g} ms do not show it: record {0}_current_A or {0}_torque_Nm, "
+                    "{4}), and rows of {5:.3g} ms do not show it: record {0}_current_A{6}, "
                     "or faster, or describe no plant (then its positions alone are diagnosed)",
                     axis.name, machine.file, 1e3 * answer, key_of("mass_kg", axis.kind),
-                    key_of("velocity_gain_N_s_per_m", axis.kind), 1e3 * machine.sample_period_s));
+                    key_of("velocity_gain_N_s_per_m", axis.kind), 1e3 * machine.sample_period_s,
+                    axis.kind == axis_kind::rotary ? fmt::format(" or {}_torque_Nm", axis.name) : ""));
 }
 
 /// Refuses a log with one position only of an axis that is a chain of them.

@@ -68,7 +68,8 @@ private:
                              axis.gantry_pair->first, axis.gantry_pair->second));
         else if (axis.positions_only)
             note(axis,
-                 "no plant is described: the axis is a chain of positions, and nothing is said of forces");
+                 "no plant is described: the axis is a chain of positions, and nothing is said of forces" +
+                     keys_without_use(node));
         else
             note(axis, axis.drive.takes_position()
                            ? "no controller is described: diagnosed from the drive's set-points onwards"
@@ -83,6 +84,16 @@ private:
         const auto has = [&](const char* box) { return axis.value->contains(box); };
         return (has("transmission") || has("encoder") || has("motor_encoder") || has("gantry_pair")) &&
                !has("controller") && !has("actuator") && !has("process") && !has("payload");
+    }
+    /// The keys of the drive of such an axis that say nothing of it, for its note.
+    static std::string keys_without_use(const json_node& axis) {
+        std::string out;
+        if (const auto drive = axis.value->find("drive"); drive != axis.value->end() && drive->is_object())
+            for (const auto& [key, value] : drive->items())
+                if (key != "kind" && key != "command_delay_s" && key != "position_gain_per_s" &&
+                    !key.starts_with("setpoint_rate_limit"))
+                    out += (out.empty() ? "" : ", ") + key;
+        return out.empty() ? out : "; not used of drive: " + out;
     }
     /// Without a plant: rotary where a key of another box is in radians (but for the motor's).
     static axis_kind kind_of_chain(const json_node& axis) {
@@ -113,11 +124,12 @@ private:
                     if (others[i] != key || mine[i] == key) continue;
                     const json_node fault = axis.at(box, content).at(key, value);
                     const auto [line, column] = key_place(text_, fault.path);
-                    const std::string message = fmt::format(
-                        "{}: belongs to a {} axis; this one is {}{}: {} (an axis has m, N and kg, or rad, Nm and "
-                        "kg_m2, throughout)",
-                        fault.path, name_of(other), name_of(axis.kind),
-                        axis.kind == axis_kind::rotary ? "" : ", without inertia_kg_m2", mine[i]);
+                    const std::string message =
+                        fmt::format("{}: belongs to a {} axis; this one is {}{}: {} (an axis has m, N and kg, "
+                                    "or rad, Nm and "
+                                    "kg_m2, throughout)",
+                                    fault.path, name_of(other), name_of(axis.kind),
+                                    axis.kind == axis_kind::rotary ? "" : ", without inertia_kg_m2", mine[i]);
                     if (line > 0) throw bad_input(top_.file, line, column, message);
                     throw bad_input(top_.file, message);
                 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../which/cause_values.hpp"
 
 namespace quadrant::inline v0::diagnosis::chain {
 
@@ -36,8 +37,9 @@ QUADRANT_DIAGNOSIS_DECL cause cause_of(const described_link& d, const answer& a,
     c.effect = name_of(f.what);
     c.probability = f.probability;
     c.group_probability = f.group_probability;
-    const term_values values(d, a.best, axis);
-    c.parameters = values.of(f.what);
+    c.parameters = term_values(d, is_claim(f) ? a.claimed : a.best, axis).of(f.what);
+    if (is_claim(f) && !std::all_of(a.findings.begin(), a.findings.end(), is_claim))
+        detail::widen(c.parameters, c.with_suspects = term_values(d, a.best, axis).of(f.what));
     c.described = !c.parameters.empty() && described_value(axis, c.parameters[0].key) != 0;
     for (term t : f.same) c.confusable_with.emplace_back(name_of(t));
     c.gap_before_position_rms_m = {f.before, f.before, f.before};
@@ -209,7 +211,7 @@ QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& as_described
     }
     const fitted given = fit_columns(r, as_described.described);
     out.gap = {.position_rms_m = given.rms, .position_peak_m = given.left.cwiseAbs().maxCoeff()};
-    out.gap_after = {.position_rms_m = a.best.held_out, .position_peak_m = a.best.left.cwiseAbs().maxCoeff()};
+    out.gap_after = {.position_rms_m = a.named.held_out, .position_peak_m = a.named.left.cwiseAbs().maxCoeff()};
     out.gap.noise_floor_position_rms_m = out.gap_after.noise_floor_position_rms_m = r.noise();
     const double whole = std::max(a.given.held_out * a.given.held_out, 1e-300);
     const told_findings told = tell_findings(out, r, d, a, axis, left_out, whole);

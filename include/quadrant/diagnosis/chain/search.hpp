@@ -20,10 +20,15 @@ struct finding {
     double before = 0, after = 0; ///< what is left without it and with it, on top of the findings before it [m]
 };
 
+/// Whether it is blamed, as a cause is.
+inline bool is_claim(const finding& f) { return f.group_probability >= 0.5; }
+
 /// What was found between two readings.
 struct answer {
     fitted given;                  ///< as described
     fitted best;                   ///< with every finding
+    fitted named;                  ///< with those that a name stands for which may be said
+    fitted claimed;                ///< with those alone that are claimed, as `apply` writes them
     std::vector<fitted> path;      ///< from `given` on, with one finding more each
     std::vector<finding> findings; ///< the first takes most off
     bool at_floor = false;         ///< nothing is left beside noise and rounding

@@ -116,9 +116,15 @@ inline machine_log with_drives(const machine_description& machine, machine_log l
     for (axis_log& logged : log.axes)
         for (const axis_description& axis : machine.axes) {
             if (axis.name != logged.name || logged.still) continue;
-            if (axis.drive.closes())
+            if (axis.drive.closes()) {
+                const bool current = logged.effort_unit == "A" && axis.command_unit != "A" &&
+                                     axis.drive.kind != drive_kind::position_servo;
                 logged = detail::with_drive(axis, logged, machine.sample_period_s);
-            else if (!logged.duty.empty() || !logged.effort.empty())
+                if (current)
+                    log.notes.push_back(fmt::format(
+                        "{}: axis {}: the current is not used: axes.{}.plant.{} turns it into force.", log.file,
+                        axis.name, axis.name, key_of("force_constant_N_per_A", axis.kind)));
+            } else if (!logged.duty.empty() || !logged.effort.empty())
                 log.notes.push_back(
                     fmt::format("{}: axis {}: what was measured beside the command is used only "
                                 "where axes.{}.drive describes a drive with loops of its own.",

@@ -38,6 +38,10 @@ void join_beside(log_header& out, const column_beside& c, log_purpose purpose, R
         (!motion || c.suffix->role == column_role::velocity)) // what a machine did, not what it is to do
         return;
     const bool measured = c.suffix->role == column_role::current || c.suffix->role == column_role::torque;
+    if (c.suffix->role == column_role::torque && axis.kind == axis_kind::linear)
+        refuse(c.offset, fmt::format("{}: axis {} is linear: log the motor's current ({}_current_A), which "
+                                     "plant.force_constant_N_per_A turns into force",
+                                     in_quotes(column.name), found->first, found->first));
     column.used = true;
     if (measured && axis.command) {
         axis.effort = c.index;
