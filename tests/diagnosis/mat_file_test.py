@@ -117,7 +117,7 @@ def main(program):
 
         # What is refused says the file and the byte.
         whole, packed = mat(record()), mat(record(), packed=True)
-        first = 128 + len(text_variable("note")) + len(variable("gain", [[3.0]]))
+        first = 128 + len(object_variable("arm")) + len(text_variable("note")) + len(variable("gain", [[3.0]]))
         broken = bytearray(packed)
         broken[-40] ^= 0x55
         wrong_size = bytearray(whole)
