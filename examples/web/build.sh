@@ -19,11 +19,12 @@ mkdir -p "$build/include" "$(dirname "$page")"
 for library in boost eigen3/Eigen nlohmann fmt xsimd; do
     ln -sfn "/usr/include/$library" "$build/include/${library##*/}"
 done
-# Two numbers a register: emscripten's headers for the names of SSE4.1, which Debian's Clang would take its own for.
+# Two numbers a register: emscripten has headers with the names of SSE4.1; Debian's Clang would find its own first.
 for header in "$(em-config EMSCRIPTEN_ROOT)"/system/include/compat/*mmintrin.h; do
     ln -sfn "$header" "$build/include/${header##*/}"
 done
-: >"$build/include/mmintrin.h" # what came before SSE, emscripten does not have
+rm -f "$build/include/mmintrin.h"
+: >"$build/include/mmintrin.h" # emscripten has nothing that is older than SSE
 cmake "-DOUT=$build/include/report_files.hpp" -DNAMESPACE=quadrant_gap \
     "-DFILES=$root/examples/programs/quadrant_gap/report_template.html;$root/examples/programs/quadrant_gap/report.css;$root/examples/programs/quadrant_gap/report.js;$dygraphs/dygraph.min.js;$dygraphs/dygraph.min.css" \
     -P "$root/examples/programs/page/embed.cmake"

@@ -619,8 +619,10 @@ TEST_CASE(
         CHECK(said.find("record q_current_A, or faster") != said.npos);
     }
     log.axes[0].effort.assign(log.samples, 0.0);
+    log.axes[0].effort_unit = "N";
     CHECK_NOTHROW(check_loops(fast("2.5e6"), log));
     log.axes[0].effort_unit = "A"; // and nothing says what force it makes
+    CHECK_THROWS_AS(check_loops(fast("2.5e6"), log), bad_input);
     log.notes.clear();
     const auto notes = with_drives(fast("2.5e5"), log).notes;
     REQUIRE(notes.size() == 1);

@@ -172,6 +172,7 @@ TEST_CASE("positions: a servo that is slow, late and soft: its fastest speed com
     CHECK(d.causes[0].with_suspects[0].key == "drive.setpoint_rate_limit_rad_per_s");
     CHECK(d.causes[0].with_suspects[0].values[0].value == doctest::Approx(fastest).epsilon(0.1));
     const estimate written = value_of(d.causes[0], "drive.setpoint_rate_limit_rad_per_s");
+    CHECK(written.value == doctest::Approx(fastest).epsilon(0.2));
     CHECK(written.low < fastest);
     CHECK(written.high > fastest);
 }

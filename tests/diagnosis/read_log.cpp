@@ -96,9 +96,12 @@ TEST_CASE("read_log: the velocities of reference and axis are read; other option
     CHECK(log.notes[2] == "log.csv: column \"y_vel_m_per_s\" belongs to no axis of the log and is ignored.");
     CHECK(refusal("t_s,x_ref_m,x_pos_m,x_cmd_V,x_vel_rad_per_s\n") ==
           "log.csv:1:29: \"x_vel_rad_per_s\": axis x is linear");
-    CHECK(refusal("t_s,x_ref_m,x_pos_m,x_cmd_m,x_torque_Nm\n") ==
-          "log.csv:1:29: \"x_torque_Nm\": axis x is linear: log the motor's current (x_current_A), which "
-          "plant.force_constant_N_per_A turns into force");
+    const auto torque = read("t_s,x_ref_m,x_pos_m,x_cmd_m,x_torque_Nm\n0,0,0,0,1\n0.1,0,1,0,2\n");
+    CHECK(torque.axes.at(0).effort.empty());
+    REQUIRE(torque.notes.size() == 1);
+    CHECK(torque.notes[0] ==
+          "log.csv: column \"x_torque_Nm\" is not used: axis x is linear; log the motor's current "
+          "(x_current_A), which plant.force_constant_N_per_A turns into force.");
 }
 
 TEST_CASE(
@@ -426,7 +429,7 @@ TEST_CASE("read_log: a missing column is refused by name") {
     // With a reference the command may be missing: a drive that takes positions needs none (match.hpp refuses
     // the others).
     CHECK(refusal("t_s,x_pos_m\n0,0\n") == "log.csv:1:12: column x_cmd_V is missing (or x_cmd_A, x_cmd_N; "
-                                           "measured: x_current_A, x_torque_Nm; of a "
+                                           "measured: x_current_A; of a "
                                            "drive that takes positions: x_ref_m)");
     CHECK(refusal("t_s,a\n0,0\n") ==
           "log.csv:1:6: no axis: columns such as x_ref_m, x_pos_m and x_cmd_V are missing");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "fit/with_drives.hpp"
 #include "log/gantry_pair.hpp"
 #include "log/log.hpp"
 #include "machine/machine.hpp"
@@ -77,7 +78,7 @@ inline void check_drive(const axis_description& axis, const axis_log& log, const
 inline void check_speed_of_loop(const axis_description& axis, const machine_description& machine,
                                 const axis_log& log, machine_log& whole) {
     const double answer = axis.answer_of_loop(), shortest = machine.sample_period_s / std::numbers::pi;
-    if (log.still || log.shows_the_force()) return;
+    if (log.still || shows_the_force(axis, log)) return;
     if (answer >= shortest) {
         if (answer < machine.sample_period_s)
             whole.notes.push_back(fmt::format(
@@ -202,13 +203,14 @@ inline void check_match(const machine_description& machine, const machine_log& l
             detail::check_drive(axis, *logged, machine.file, log.file);
             continue;
         }
+        const std::string torque =
+            axis.kind == axis_kind::rotary ? fmt::format(", {}_torque_Nm", axis.name) : "";
         if (logged->command_unit.empty())
-            throw bad_input(
-                log.file,
-                fmt::format("column {0}_cmd_V is missing (or {0}_cmd_A, {0}_cmd_{1}; measured: "
-                            "{0}_current_A, {0}_torque_Nm): without a command only an axis whose drive "
-                            "takes positions is diagnosed (axes.{0}.drive.kind)",
-                            axis.name, key_of("N", axis.kind)));
+            throw bad_input(log.file,
+                            fmt::format("column {0}_cmd_V is missing (or {0}_cmd_A, {0}_cmd_{1}; measured: "
+                                        "{0}_current_A{2}): without a command only an axis whose drive "
+                                        "takes positions is diagnosed (axes.{0}.drive.kind)",
+                                        axis.name, key_of("N", axis.kind), torque));
         if (logged->command_unit == axis.command_unit) continue;
         if (logged->command_unit.starts_with(key_of("m", axis.kind)) || logged->command_unit == "duty")
             throw bad_input(

@@ -65,7 +65,8 @@ private:
             note(axis,
                  fmt::format("no plant is described: the difference of {} and {} is compared, and nothing is "
                              "said of forces",
-                             axis.gantry_pair->first, axis.gantry_pair->second));
+                             axis.gantry_pair->first, axis.gantry_pair->second) +
+                     keys_without_use(node));
         else if (axis.positions_only)
             note(axis,
                  "no plant is described: the axis is a chain of positions, and nothing is said of forces" +

@@ -236,8 +236,8 @@ QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& as_described
                           "replay"});
     out.verdict = verdict_of(out, at_floor, told.all_claimed);
     out.structure = fmt::format("axis {}: {:.3g} um rms between {} and {} (floor {:.3g} um)", axis.name,
-                                1e6 * a.best.held_out, d.from, d.to, 1e6 * r.noise());
-    give_signals(out, r, a.best);
+                                1e6 * a.named.held_out, d.from, d.to, 1e6 * r.noise());
+    give_signals(out, r, a.named);
     out.play = a.best.model.play;
     out.compliance = term_values(d, a.best, axis).compliance();
     const link_model& m = out.best = a.best.model;

@@ -42,6 +42,7 @@ QUADRANT_DIAGNOSIS_DECL answer seeker::find() const {
         if (nameless || excluded) out.named = without_term(r_, out.named, f.what, described_);
         if (!is_claim(f)) out.claimed = without_term(r_, out.claimed, f.what, described_);
     }
+    if (!possible(r_, out.claimed)) out.claimed = best; // a claim that needs a suspect to make sense
     return out;
 }
 

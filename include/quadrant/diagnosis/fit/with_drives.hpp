@@ -11,6 +11,17 @@ namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
+/// The unit in which something was measured behind the command; empty: nothing was.
+inline std::string unit_of_measured(const axis_log& log) {
+    return log.command_is == command_origin::measured ? log.command_unit
+           : log.effort.empty()                       ? std::string()
+                                                      : log.effort_unit;
+}
+/// Whether the machine file says what force a number in this unit is.
+inline bool is_known_force(const axis_description& axis, const std::string& unit) {
+    return is_force(unit) || (!unit.empty() && unit == axis.command_unit);
+}
+
 /// What was measured behind the drive, in the unit of what its law gives; empty: nothing. `step`: of the
 /// column, in that unit.
 inline std::vector<double> measured_behind(const axis_description& axis, const axis_log& log, double& step) {
@@ -29,8 +40,8 @@ inline std::vector<double> measured_behind(const axis_description& axis, const a
     }
     const double constant = axis.plant.force_constant_N_per_V;
     const auto force = [&](const std::vector<double>& x, const std::string& unit, double written) {
-        const bool known = is_force(unit) || unit == axis.command_unit;
-        return known ? scaled(x, is_force(unit) ? 1 : constant, written) : std::vector<double>{};
+        return is_known_force(axis, unit) ? scaled(x, is_force(unit) ? 1 : constant, written)
+                                          : std::vector<double>{};
     };
     if (log.command_is == command_origin::measured)
         return force(log.command, log.command_unit, log.command_step);
@@ -110,6 +121,11 @@ inline axis_log with_drive(const axis_description& axis, const axis_log& log, do
 
 } // namespace detail
 
+/// Whether the log shows the force that such a drive makes.
+inline bool shows_the_force(const axis_description& axis, const axis_log& log) {
+    return log.drive ? log.drive->tapped() : detail::is_known_force(axis, detail::unit_of_measured(log));
+}
+
 /// The log with the axes of such drives made ready; the others stay as they are. A note names columns that only
 /// a drive would use.
 inline machine_log with_drives(const machine_description& machine, machine_log log) {
@@ -117,7 +133,7 @@ inline machine_log with_drives(const machine_description& machine, machine_log l
         for (const axis_description& axis : machine.axes) {
             if (axis.name != logged.name || logged.still) continue;
             if (axis.drive.closes()) {
-                const bool current = logged.effort_unit == "A" && axis.command_unit != "A" &&
+                const bool current = detail::unit_of_measured(logged) == "A" && axis.command_unit != "A" &&
                                      axis.drive.kind != drive_kind::position_servo;
                 logged = detail::with_drive(axis, logged, machine.sample_period_s);
                 if (current)

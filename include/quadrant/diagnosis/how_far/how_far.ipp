@@ -58,7 +58,8 @@ QUADRANT_DIAGNOSIS_DECL bool how_far::surely_shrinks(const candidate& from, cons
     const auto taken = [&](const auto& w) { return std::hypot(before.rms(w), floor) - after.rms(w); };
     const auto plainly = [&](const auto& w) { return before.rms(w) - after.rms(w); };
     const estimate shrinks = resampled(draws_, judged_.segments, plainly);
-    // Where motions lose by it half as much as others gain, it takes nothing off, however far above the floor.
+    // A gain over the motions whose interval reaches half as far below zero as above it is none, however far
+    // above the floor.
     return resampled(draws_, judged_.segments, taken).low > 0 && shrinks.high > -2 * shrinks.low;
 }
 

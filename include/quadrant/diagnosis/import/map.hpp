@@ -41,7 +41,7 @@ inline constexpr std::array signal_kinds{
     signal_kind{signal_role::reference_velocity, "reference_velocity", "_ref_", "m_per_s", "rad_per_s"},
     signal_kind{signal_role::velocity, "velocity", "_vel_", "m_per_s", "rad_per_s"},
     signal_kind{signal_role::current, "current", "_current_", "A", "A"},
-    signal_kind{signal_role::torque, "torque", "_torque_", "Nm", "Nm"},
+    signal_kind{signal_role::torque, "torque", "_torque_", "", "Nm"},
     signal_kind{signal_role::duty, "duty", "_duty", "1", "1", true},
     signal_kind{signal_role::supply, "supply", "_supply_", "V", "V"},
     signal_kind{signal_role::enabled, "enabled", "_enabled", "1", "1", true},

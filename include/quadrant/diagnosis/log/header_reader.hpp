@@ -38,10 +38,13 @@ void join_beside(log_header& out, const column_beside& c, log_purpose purpose, R
         (!motion || c.suffix->role == column_role::velocity)) // what a machine did, not what it is to do
         return;
     const bool measured = c.suffix->role == column_role::current || c.suffix->role == column_role::torque;
-    if (c.suffix->role == column_role::torque && axis.kind == axis_kind::linear)
-        refuse(c.offset, fmt::format("{}: axis {} is linear: log the motor's current ({}_current_A), which "
-                                     "plant.force_constant_N_per_A turns into force",
-                                     in_quotes(column.name), found->first, found->first));
+    if (c.suffix->role == column_role::torque && axis.kind == axis_kind::linear) {
+        out.notes.push_back(fmt::format(
+            "column {} is not used: axis {} is linear; log the motor's current ({}_current_A), which "
+            "plant.force_constant_N_per_A turns into force",
+            in_quotes(column.name), found->first, found->first));
+        return;
+    }
     column.used = true;
     if (measured && axis.command) {
         axis.effort = c.index;
@@ -177,11 +180,12 @@ private:
         if (!axis.position) refuse_(line_.size(), fmt::format("column {}_pos_{} is missing", name, m));
         // A position beside other axes says something of those: check_match() asks for the rest.
         if (!axis.command && !axis.reference && !axis.motor && out_.axes.size() == 1)
-            refuse_(
-                line_.size(),
-                fmt::format("column {0}_cmd_V is missing (or {0}_cmd_A, {0}_cmd_{1}; measured: {0}_current_A, "
-                            "{0}_torque_Nm; of a drive that takes positions: {0}_ref_{2})",
-                            name, force, m));
+            refuse_(line_.size(),
+                    fmt::format(
+                        "column {0}_cmd_V is missing (or {0}_cmd_A, {0}_cmd_{1}; measured: {0}_current_A{3}; "
+                        "of a drive that takes positions: {0}_ref_{2})",
+                        name, force, m,
+                        *axis.kind == axis_kind::rotary ? fmt::format(", {}_torque_Nm", name) : ""));
         if (const auto kind = kind_of_unit(axis.command_unit); kind && *kind != *axis.kind)
             refuse_(axis.command_at, fmt::format("column {}_cmd_{} belongs to a {} axis; axis {} is {}", name,
                                                  axis.command_unit, name_of(*kind), name, name_of(*axis.kind)));

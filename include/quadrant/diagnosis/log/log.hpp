@@ -69,7 +69,6 @@ struct axis_log {
     std::shared_ptr<const beam_turn> turn{}; ///< of two motors on one beam (join_gantry_pairs())
 
     /// Whether the force was measured: no replay of a drive stands for it.
-    bool shows_the_force() const { return command_is == command_origin::measured || !effort.empty(); }
 };
 
 /// The motion of an axis: that of its reference, or its own where the reference stands still (an axis that is

@@ -63,16 +63,19 @@ QUADRANT_DIAGNOSIS_DECL bool is_undetermined(const std::vector<parameter_estimat
 }
 
 QUADRANT_DIAGNOSIS_DECL bool may_be_nothing(const std::vector<parameter_estimate>& values) {
-    const auto is_size_of_wave = [](const parameter_estimate& p) {
+    const auto is_size = [](const parameter_estimate& p) { // of a wave, or one of two differences
         const machine_key* key = key_named(p.key);
-        return key && !key->components.empty();
+        return key && (!key->components.empty() || p.key.ends_with("_asymmetry"));
     };
-    auto size = std::find_if(values.begin(), values.end(), is_size_of_wave);
-    if (size == values.end()) size = values.begin();
-    const machine_key* key = key_named(size->key);
-    return key && std::all_of(size->values.begin(), size->values.end(), [&](const estimate& value) {
-               return value.low <= key->neutral && key->neutral <= value.high;
-           });
+    const auto reaches_neutral = [](const parameter_estimate& p) {
+        const machine_key* key = key_named(p.key);
+        return key && std::all_of(p.values.begin(), p.values.end(), [&](const estimate& value) {
+                   return value.low <= key->neutral && key->neutral <= value.high;
+               });
+    };
+    if (std::none_of(values.begin(), values.end(), is_size)) return reaches_neutral(values.front());
+    return std::all_of(values.begin(), values.end(),
+                       [&](const parameter_estimate& p) { return !is_size(p) || reaches_neutral(p); });
 }
 
 } // namespace quadrant::inline v0::diagnosis::detail

@@ -20,11 +20,12 @@ inline bool lies_beyond(const cause& found, const candidate& best) {
     return found.described && best.ends_at_a_bound(found.parameters.front().key);
 }
 
-/// Whether an interval does not say which way a force acts, or which way a number is off.
-inline bool has_open_sign(const parameter_estimate& found) {
-    const machine_key* key = key_named(found.key);
-    const estimate& value = found.values.front();
-    return key && key->rule.holds(value.low) && value.low < 0 && value.high > 0;
+/// Whether the scatter of what an effect adds reaches nothing. A number that moves by ratio never does.
+inline bool may_be_absent(const candidate& best, const effect& e, const scoring& score) {
+    const auto values = estimates(best, e, score);
+    const auto by_ratio = [&](const parameter& p) { return p.key == values.front().key && p.logarithmic; };
+    return std::none_of(best.fit.parameters.begin(), best.fit.parameters.end(), by_ratio) &&
+           may_be_nothing(values);
 }
 
 /// Whether something else does as much as this cause. `of_laws`: the calibrated machine leaves no more than
@@ -90,9 +91,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
                 if (j != i && r.same && r.name != effects[j])
                     detail::widen(named.parameters, estimates(r.model, e, c.record.score));
         const bool undetermined = detail::is_undetermined(named.parameters); // by its own scatter
-        const auto by_scatter = estimates(c.best(), e, c.record.score);
-        const bool may_be_absent = !named.described && (detail::has_open_sign(by_scatter.front()) ||
-                                                        detail::may_be_nothing(by_scatter));
+        const bool absent = !named.described && detail::may_be_absent(c.best(), e, c.record.score);
         detail::add_model_error(named.parameters, e, c, detail::left_beside(c, i));
         // A suspect that is worth its place on held-out motion was there in one of eleven, however little spoke
         // for it (docs/trial.md).
@@ -103,7 +102,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
             (1 - detail::unknown(c, i)) * detail::against_others(c, rivals[i]) * (1 - excluded.probability);
         named.probability = std::max(least, named.probability * known);
         named.group_probability = std::max(named.probability, named.group_probability * known);
-        if (undetermined || may_be_absent || detail::is_no_claim(c, e, named, as_given, of_laws))
+        if (undetermined || absent || detail::is_no_claim(c, e, named, as_given, of_laws))
             detail::to_suspects({&named, 1});
         out.push_back(std::move(named));
     }

@@ -6,13 +6,15 @@
 
 namespace quadrant::inline v0::diagnosis::detail {
 
-/// A record without a single block of samples to score says nothing of a model, and one in pieces of which
-/// hardly any is as long as that says it of these alone. Nothing else is too short.
+/// A record without a single block of samples to score says nothing of a model. One in pieces, of which a few
+/// blocks alone are judged, says nothing of the rest. Nothing else is too short.
 inline void need_blocks(const axis_case& c, const std::string& file) {
     const channel& blocks = c.record.score.channels.front();
     const auto scored = blocks.segment_of_block.size() * blocks.block;
     const auto out = static_cast<std::size_t>(std::count(c.log.left_out.begin(), c.log.left_out.end(), 1));
-    if (scored > 0 && 20 * scored >= c.log.position.size() - out) return;
+    constexpr std::size_t few = 5; // blocks: as many as a channel needs
+    if (scored > 0 && (blocks.segment_of_block.size() >= few || 20 * scored >= c.log.position.size() - out))
+        return;
     std::size_t longest = 0, pieces = 0, row = 0;
     for (const unsigned char left_out : c.log.left_out) {
         row = left_out ? 0 : row + 1;
@@ -24,6 +26,11 @@ inline void need_blocks(const axis_case& c, const std::string& file) {
                    : worded(" in %zu pieces, the longest of %zu (import with a longer --sample-period bridges "
                             "short gaps)",
                             pieces, longest);
+    if (scored > 0)
+        throw bad_input(file,
+                        worded("%zu samples of axis %s%s: only %zu of them lie in pieces that are long "
+                               "enough to be judged",
+                               c.log.position.size() - out, c.axis.name.c_str(), in_pieces.c_str(), scored));
     throw bad_input(file,
                     worded("%zu samples of axis %s%s: a diagnosis needs at least %zu in a row, one block to "
                            "start the observer and one to score",

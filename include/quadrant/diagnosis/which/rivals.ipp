@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-// Long: what a name weighs beside a cause is one rule after the other.
+// Long: the rules by which a name is weighed against a cause are read together.
 #pragma once
 
 namespace quadrant::inline v0::diagnosis::detail {
@@ -187,7 +187,7 @@ public:
         }
         if (r.of_one_speed) r.weight = commoner * first.weight;
         const bool follows = pays && &r != &first && follows_the_motion(r) && stands_in(r, first);
-        if (follows) r.weight = std::max(r.weight, commoner * first.weight);
+        if (follows) r.weight = std::max(r.weight, odds * first.weight);
         r.same = !r.unlisted() && (r.of_one_speed || within || equivalent || follows ||
                                    (pays && r.weight > 0.01 && stands_in(r, first)));
     }

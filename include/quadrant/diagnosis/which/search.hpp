@@ -73,7 +73,7 @@ private:
     bool goes_on_without(candidate& best, const candidate& step) const;
     /// A wrong scale of the command changes every force at once, and several names together correct what it
     /// makes. Where it does alone as much as the first of the names of `best`, it is followed without that one
-    /// to as many names. The better of the two; each is a rival of the other.
+    /// to as many names. Returns the better one; the other is a model that was tried, and counts against it.
     candidate by_the_scale(const candidate& best) const;
     /// The calibrated machine with two and more of the everyday effects: one alone may take what two of them
     /// make.

@@ -72,16 +72,19 @@ QUADRANT_DIAGNOSIS_DECL candidate search::by_the_scale(const candidate& best) co
         if (e->joins == joint::motor_gain && !is_wave(*e) && !has(best, e))
             if (const candidate* c = alone(*e); c && (!scale || c->total > scale->total)) scale = c;
     if (best.effects.size() < 2 || !head || !scale || scale->total < head->total - rules_.margin) return best;
-    const effect* without = head->effects.front();
+    std::vector<const effect*> others = suspects();
+    std::erase(others, head->effects.front());
     candidate way = *scale;
     while (way.effects.size() < best.effects.size() && !over()) {
-        std::vector<candidate> next = with_each(way);
-        std::erase_if(next, [&](const candidate& c) { return has(c, without); });
+        std::vector<candidate> next = with_each(way, others);
         const candidate* step = paying(next, way);
         if (!step) break;
         way = *step;
     }
-    return way.total > best.total + rules_.margin ? way : best;
+    const auto worth = [&](const candidate& c) {
+        return c.total - rules_.margin * static_cast<double>(c.effects.size());
+    };
+    return worth(way) > worth(best) + rules_.margin ? way : best;
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<const effect*> search::beyond_tolerance(const candidate& c) const {
