@@ -20,6 +20,7 @@ for library in boost eigen3/Eigen nlohmann fmt xsimd; do
     ln -sfn "/usr/include/$library" "$build/include/${library##*/}"
 done
 # Two numbers a register: emscripten has headers with the names of SSE4.1; Debian's Clang would find its own first.
+# Eigen asks for more of SSE than they have, and stays as it is. The numbers that wait take more than 2 MB of stack.
 for header in "$(em-config EMSCRIPTEN_ROOT)"/system/include/compat/*mmintrin.h; do
     ln -sfn "$header" "$build/include/${header##*/}"
 done

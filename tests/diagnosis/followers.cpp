@@ -177,6 +177,25 @@ TEST_CASE("positions: a servo that is slow, late and soft: its fastest speed com
     CHECK(written.high > fastest);
 }
 
+TEST_CASE("positions: a drift has no name, and what is left beside the causes holds it") {
+    constexpr double drift = 0.05, late = 0.06, count = 1e-4; // rad over the record, s, rad
+    std::string out = "t_s,q_ref_rad,q_pos_rad\n";
+    const auto asked = [](double t) { return std::sin(0.7 * t) + 0.4 * std::sin(1.9 * t); };
+    for (int k = 0; k < 3000; ++k) {
+        const double t = 0.02 * k, q = asked(t - late) + drift * k / 3000;
+        out += fmt::format("{:.2f},{:.7f},{:.7f}\n", t, asked(t), count * std::round(q / count));
+    }
+    std::istringstream log(out);
+    const auto d = diagnose(read_machine(R"({"schema": "quadrant.machine/1", "sample_period_s": 0.02,
+        "axes": {"q": {"encoder": {"resolution_rad": 1e-4}}}})",
+                                         "machine.json"),
+                            read_log(log, "log.csv"));
+    CAPTURE(said(d));
+    CHECK(std::any_of(d.notes.begin(), d.notes.end(),
+                      [](const std::string& note) { return note.find("drifts by") != note.npos; }));
+    CHECK(d.axes[0].gap_after.position_rms_m == doctest::Approx(drift / std::sqrt(12.0)).epsilon(0.15));
+}
+
 TEST_CASE("positions: set-points that have the name of a command are told how to be named") {
     std::string text = milled();
     text.replace(text.find("y_ref_m"), 7, "y_cmd_m");

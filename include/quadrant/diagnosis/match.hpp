@@ -95,7 +95,7 @@ inline void check_speed_of_loop(const axis_description& axis, const machine_desc
                     "or faster, or describe no plant (then its positions alone are diagnosed)",
                     axis.name, machine.file, 1e3 * answer, key_of("mass_kg", axis.kind),
                     key_of("velocity_gain_N_s_per_m", axis.kind), 1e3 * machine.sample_period_s,
-                    axis.kind == axis_kind::rotary ? fmt::format(" or {}_torque_Nm", axis.name) : ""));
+                    and_torque(" or ", axis.name, axis.kind)));
 }
 
 /// Refuses a log with one position only of an axis that is a chain of them.
@@ -203,14 +203,13 @@ inline void check_match(const machine_description& machine, const machine_log& l
             detail::check_drive(axis, *logged, machine.file, log.file);
             continue;
         }
-        const std::string torque =
-            axis.kind == axis_kind::rotary ? fmt::format(", {}_torque_Nm", axis.name) : "";
         if (logged->command_unit.empty())
             throw bad_input(log.file,
                             fmt::format("column {0}_cmd_V is missing (or {0}_cmd_A, {0}_cmd_{1}; measured: "
                                         "{0}_current_A{2}): without a command only an axis whose drive "
                                         "takes positions is diagnosed (axes.{0}.drive.kind)",
-                                        axis.name, key_of("N", axis.kind), torque));
+                                        axis.name, key_of("N", axis.kind),
+                                        and_torque(", ", axis.name, axis.kind)));
         if (logged->command_unit == axis.command_unit) continue;
         if (logged->command_unit.starts_with(key_of("m", axis.kind)) || logged->command_unit == "duty")
             throw bad_input(

@@ -125,12 +125,11 @@ private:
                     if (others[i] != key || mine[i] == key) continue;
                     const json_node fault = axis.at(box, content).at(key, value);
                     const auto [line, column] = key_place(text_, fault.path);
-                    const std::string message =
-                        fmt::format("{}: belongs to a {} axis; this one is {}{}: {} (an axis has m, N and kg, "
-                                    "or rad, Nm and "
-                                    "kg_m2, throughout)",
-                                    fault.path, name_of(other), name_of(axis.kind),
-                                    axis.kind == axis_kind::rotary ? "" : ", without inertia_kg_m2", mine[i]);
+                    const std::string message = fmt::format(
+                        "{}: belongs to a {} axis; this one is {}{}: {} (an axis has m, N and kg, or rad, Nm and "
+                        "kg_m2, throughout)",
+                        fault.path, name_of(other), name_of(axis.kind),
+                        axis.kind == axis_kind::rotary ? "" : ", without inertia_kg_m2", mine[i]);
                     if (line > 0) throw bad_input(top_.file, line, column, message);
                     throw bad_input(top_.file, message);
                 }

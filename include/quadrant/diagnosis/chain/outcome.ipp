@@ -144,7 +144,7 @@ inline told_findings tell_findings(outcome& out, const readings& r, const descri
                             axis.name, effect_named(name_of(f.what))->label, d.from, d.to));
             continue;
         }
-        if (f.what == term::drift || (f.what == term::delay && !d.readings.asked)) {
+        if (is_nameless(f.what, d.readings.asked)) {
             told.without_name |= f.what == term::drift;
             out.notes.push_back(note_without_name(d, a, axis, f.what));
             continue;

@@ -23,6 +23,9 @@ struct finding {
 /// Whether it is blamed, as a cause is.
 inline bool is_claim(const finding& f) { return f.group_probability >= 0.5; }
 
+/// Whether no name stands for a term: a drift, or two readings of two moments.
+inline bool is_nameless(term t, bool asked) { return t == term::drift || (t == term::delay && !asked); }
+
 /// What was found between two readings.
 struct answer {
     fitted given;                  ///< as described

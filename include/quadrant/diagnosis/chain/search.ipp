@@ -38,8 +38,8 @@ QUADRANT_DIAGNOSIS_DECL answer seeker::find() const {
     out.named = out.claimed = best;
     for (const finding& f : out.findings) {
         const bool excluded = std::find(excluded_.begin(), excluded_.end(), f.what) != excluded_.end();
-        const bool nameless = f.what == term::drift || (f.what == term::delay && !r_.of().asked);
-        if (nameless || excluded) out.named = without_term(r_, out.named, f.what, described_);
+        if (is_nameless(f.what, r_.of().asked) || excluded)
+            out.named = without_term(r_, out.named, f.what, described_);
         if (!is_claim(f)) out.claimed = without_term(r_, out.claimed, f.what, described_);
     }
     if (!possible(r_, out.claimed)) out.claimed = best; // a claim that needs a suspect to make sense

@@ -121,7 +121,7 @@ inline axis_log with_drive(const axis_description& axis, const axis_log& log, do
 
 } // namespace detail
 
-/// Whether the log shows the force that such a drive makes.
+/// Whether the force that such a drive makes was measured: no replay of it stands for the force.
 inline bool shows_the_force(const axis_description& axis, const axis_log& log) {
     return log.drive ? log.drive->tapped() : detail::is_known_force(axis, detail::unit_of_measured(log));
 }

@@ -22,7 +22,7 @@ public:
 
     void measure(axis_result& result, std::vector<cause>& causes) const;
     /// Whether 97.5 of 100 draws of the motions leave no more force with the model `to` than with `from`, noise
-    /// apart.
+    /// apart, and the interval of the gain reaches less than half as far below zero as above it.
     bool surely_shrinks(const candidate& from, const candidate& to) const;
     /// Position error times command error of the closed loop on the calibrated machine, and with each cause
     /// more. Empty where the loop cannot be closed, and where samples are lost: others in each run.

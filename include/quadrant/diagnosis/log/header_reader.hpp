@@ -184,8 +184,7 @@ private:
                     fmt::format(
                         "column {0}_cmd_V is missing (or {0}_cmd_A, {0}_cmd_{1}; measured: {0}_current_A{3}; "
                         "of a drive that takes positions: {0}_ref_{2})",
-                        name, force, m,
-                        *axis.kind == axis_kind::rotary ? fmt::format(", {}_torque_Nm", name) : ""));
+                        name, force, m, and_torque(", ", name, *axis.kind)));
         if (const auto kind = kind_of_unit(axis.command_unit); kind && *kind != *axis.kind)
             refuse_(axis.command_at, fmt::format("column {}_cmd_{} belongs to a {} axis; axis {} is {}", name,
                                                  axis.command_unit, name_of(*kind), name, name_of(*axis.kind)));

@@ -67,8 +67,6 @@ struct axis_log {
     std::shared_ptr<const driven_motion> drive{};
     std::vector<double> asked{};             ///< then: the controller's output, as logged
     std::shared_ptr<const beam_turn> turn{}; ///< of two motors on one beam (join_gantry_pairs())
-
-    /// Whether the force was measured: no replay of a drive stands for it.
 };
 
 /// The motion of an axis: that of its reference, or its own where the reference stands still (an axis that is

@@ -94,4 +94,9 @@ inline std::string text_of(std::string_view linear, axis_kind kind) {
 /// The command of the axis is its force or torque itself: there is no constant between them.
 inline bool is_force(std::string_view command_unit) { return command_unit == "N" || command_unit == "Nm"; }
 
+/// Behind the column of a measured current, after this word: that of a torque, which a rotary axis may have.
+inline std::string and_torque(std::string_view word, std::string_view axis, axis_kind kind) {
+    return kind == axis_kind::rotary ? std::string(word).append(axis).append("_torque_Nm") : "";
+}
+
 } // namespace quadrant::inline v0::diagnosis

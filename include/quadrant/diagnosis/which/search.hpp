@@ -58,6 +58,10 @@ public:
     plant_model nearest() const;
 
 private:
+    /// The score of a model, less what each of its names must bring.
+    double worth(const candidate& c) const {
+        return c.total - rules_.margin * static_cast<double>(c.effects.size());
+    }
     /// Whether what a model leaves needs no further cause of another kind: nothing that would matter.
     bool enough(const candidate& c) const { return near_floor(c) && settled(c); }
     /// The suspects whose number is beyond its tolerance: where nothing that would matter is left, such a

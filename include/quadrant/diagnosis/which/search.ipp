@@ -81,9 +81,6 @@ QUADRANT_DIAGNOSIS_DECL candidate search::by_the_scale(const candidate& best) co
         if (!step) break;
         way = *step;
     }
-    const auto worth = [&](const candidate& c) {
-        return c.total - rules_.margin * static_cast<double>(c.effects.size());
-    };
     return worth(way) > worth(best) + rules_.margin ? way : best;
 }
 
@@ -200,9 +197,6 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::everyday() const {
 
 QUADRANT_DIAGNOSIS_DECL const candidate* search::paying(std::vector<candidate>& next,
                                                         const candidate& best) const {
-    const auto worth = [&](const candidate& c) {
-        return c.total - rules_.margin * static_cast<double>(c.effects.size());
-    };
     std::stable_sort(next.begin(), next.end(),
                      [&](const auto& a, const auto& b) { return worth(a) > worth(b); });
     const auto found = std::find_if(next.begin(), next.end(), [&](const auto& c) { return pays(c, best); });
