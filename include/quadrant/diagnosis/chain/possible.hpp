@@ -13,14 +13,15 @@ namespace quadrant::inline v0::diagnosis::chain {
 inline double steepest_of(const readings& r, const fitted& f, std::size_t column) {
     const auto first =
         static_cast<std::size_t>(std::find(f.of.begin(), f.of.end(), f.of[column]) - f.of.begin());
-    const auto i = static_cast<double>(column - first);
+    const std::size_t nth = column - first;
+    const auto i = static_cast<double>(nth);
     const double size = std::abs(f.values[static_cast<Eigen::Index>(column)]);
     if (f.of[column] == term::smooth) return size * (i + 2) * (i + 3) / r.travel(); // at the ends
     if (f.of[column] != term::pitch && f.of[column] != term::cyclic) return 0;
     const double period = f.of[column] == term::pitch ? f.model.pitch_period : f.model.cyclic_period;
     // Of a sine and a cosine beside each other the larger one, at least.
-    const double other =
-        std::abs(f.values[static_cast<Eigen::Index>(column + (static_cast<int>(i) % 2 == 0 ? 1 : -1))]);
+    const std::size_t beside = nth % 2 == 0 ? column + 1 : column - 1;
+    const double other = std::abs(f.values[static_cast<Eigen::Index>(beside)]);
     return size < other ? 0 : 2 * std::numbers::pi * (std::floor(i / 2) + 1) * size / period;
 }
 
