@@ -104,7 +104,7 @@ TEST_CASE("positions: a delay and a gain that are not there are taken off, and o
     for (const char* described : {R"("command_delay_s": 0.05)", R"("position_gain_per_s": 20)",
                                   R"("command_delay_s": 0.05, "position_gain_per_s": 20)"})
         for (const truth t : {truth{0, 0}, truth{0.03, 0}, truth{0, 0.03}})
-            for (const std::uint64_t seed : {1, 2, 3}) {
+            for (const std::uint64_t seed : {1U, 2U, 3U}) {
                 auto machine = mill(described);
                 machine.sample_period_s = 0.02;
                 std::istringstream log(followed(t, seed));

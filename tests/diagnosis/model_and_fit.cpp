@@ -132,9 +132,10 @@ TEST_CASE("calibration: a constant force and the asymmetries of friction move in
         axis.plant.coulomb_N = 5;
         axis.plant.coulomb_asymmetry = sign * 0.2;
         axis.plant.viscous_asymmetry = sign * 0.1;
-        for (const auto& [key, value] :
-             {std::pair{"constant_force_N", 4.0}, std::pair{"coulomb_asymmetry", 0.2},
-              std::pair{"viscous_asymmetry", 0.1}}) {
+        for (const auto& described : {std::pair{"constant_force_N", 4.0}, std::pair{"coulomb_asymmetry", 0.2},
+                                      std::pair{"viscous_asymmetry", 0.1}}) {
+            const char* const key = described.first;
+            const double value = described.second;
             CAPTURE(key);
             const auto p = moving(key);
             REQUIRE(p);

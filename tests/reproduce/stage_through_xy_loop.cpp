@@ -128,12 +128,12 @@ using namespace stage_through_xy_loop;
 TEST_CASE(
     "xy_loop: the precision stage moves as an axis of it as it does by itself, bit for bit, with each way of "
     "compensating its friction") {
-    for (const auto& [length, time] : {std::pair{0.3, 1.0}, {0.02, 0.5}, {500e-6, 0.2}}) {
-        CAPTURE(length);
-        same_run<stage::no_feedforward>(stage::real, {}, move_of{length, time}, time + 0.2);
-        same_run<stage::fed_forward>(stage::real, {}, move_of{length, time}, time + 0.2);
-        same_run<stage::observed>(stage::real, {stage::believed, stage::moderate}, move_of{length, time},
-                                  time + 0.2);
+    for (const move_of& move : {move_of{0.3, 1.0}, {0.02, 0.5}, {500e-6, 0.2}}) {
+        CAPTURE(move.length);
+        const double until = move.time + 0.2;
+        same_run<stage::no_feedforward>(stage::real, {}, move, until);
+        same_run<stage::fed_forward>(stage::real, {}, move, until);
+        same_run<stage::observed>(stage::real, {stage::believed, stage::moderate}, move, until);
     }
     same_run<stage::fed_forward>(stage::real, {}, stage::linear_cycle(), stage::linear_cycle::end());
 }
