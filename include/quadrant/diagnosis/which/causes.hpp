@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "as_described.hpp"
 #include "between_rows.hpp"
 #include "cause_values.hpp"
 #include "doubt.hpp"

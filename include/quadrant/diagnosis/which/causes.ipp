@@ -5,15 +5,6 @@ namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
-/// Whether what was found of an effect does not say that its number is another than the file's: the described
-/// one is in the interval of its value, which is as wide as other laws of it read otherwise.
-inline bool is_as_described(const cause& found, const effect& e, const plant_model& as_given) {
-    if (!found.described) return false;
-    const estimate& value = found.parameters.front().values.front();
-    const double described = e.read(as_given).front().values.front();
-    return value.low <= described && described <= value.high;
-}
-
 /// Whether a number of the file was found only as far from it as is searched: another effect drives a fit that
 /// far, too.
 inline bool lies_beyond(const cause& found, const candidate& best) {
