@@ -128,9 +128,10 @@ inline motion rich_motion(const motion_limits& l, dice& random) {
     };
     const auto tones = [&] {
         const double seconds = std::min(left(), l.seconds * random.uniform(0.1, 0.18));
-        if (seconds > 0.5)
-            out.tones(random.uniform(4, 12), l.top_Hz, l.acceleration * random.uniform(0.1, 0.4), seconds,
-                      random);
+        if (seconds <= 0.5) return;
+        const double acceleration = l.acceleration * random.uniform(0.1, 0.4);
+        const double lowest = random.uniform(4, 12); // not in the call, whose order is the compiler's choice
+        out.tones(lowest, l.top_Hz, acceleration, seconds, random);
     };
     std::vector<int> order{0, 0, 1, 1, 2};
     if (random.chance(0.7)) order.push_back(3);
