@@ -16,8 +16,6 @@ using quadrant::diagnosis::bad_input;
 
 namespace {
 
-constexpr double least_coherence = 0.5;
-
 /// The lines that were excited and are coherent.
 an::measured_frf trusted(const an::measured_frf& all, double half_rate, std::size_t& left_out) {
     an::measured_frf out{{}, all.averages};

@@ -8,6 +8,9 @@
 
 namespace quadrant_cnc {
 
+/// What a line of a response needs to be used.
+inline constexpr double least_coherence = 0.5;
+
 /// A frequency response that a user measured: position over command, in metres per volt.
 struct frf_file {
     std::string file;

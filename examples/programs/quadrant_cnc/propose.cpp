@@ -44,7 +44,6 @@ proposal propose(const frf_file& measured, const axis_description& a, double per
     const an::gain_design_options wanted;
     out.wanted = {wanted.velocity.gain, wanted.velocity.phase, wanted.velocity.modulus};
     const estimate velocity = velocity_of(a, period, out);
-    constexpr double least_coherence = 0.5;
     try {
         const an::tabulated_response axis =
             measured.frf.response(frequency(), an::hertz(0.5 / period), least_coherence);
