@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -22,10 +23,12 @@ inline std::vector<double> values_of(const effect& e, plant_model model, std::st
 }
 
 /// Whether what was found of an effect does not say that its numbers are others than the file's: each described
-/// one is in the interval of its value, which is as wide as other laws of it read otherwise.
+/// one is in the interval of its value. Of a law that others imitate the first one decides, whose interval is as
+/// wide as they read it otherwise.
 inline bool is_as_described(const cause& found, const effect& e, const plant_model& as_given) {
     if (!found.described) return false;
-    for (const parameter_estimate& p : found.parameters) {
+    const std::size_t told = e.by_another_law > 1 ? 1 : found.parameters.size();
+    for (const parameter_estimate& p : std::span(found.parameters).first(told)) {
         const auto described = values_of(e, as_given, p.key);
         const bool turns = p.key.ends_with("phase_rad");
         for (std::size_t i = 0; i < std::min(described.size(), p.values.size()); ++i) {
