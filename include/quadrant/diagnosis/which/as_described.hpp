@@ -22,9 +22,9 @@ inline std::vector<double> values_of(const effect& e, plant_model model, std::st
     return {};
 }
 
-/// Whether what was found of an effect does not say that its numbers are others than the file's: each described
-/// one is in the interval of its value. Of a law that others imitate the first one decides, whose interval is as
-/// wide as they read it otherwise.
+/// Whether what was found of an effect does not say that its numbers are others than the file's: each
+/// described one is in the interval of its value. Of a law that others imitate the first one decides, whose
+/// interval is as wide as they read it otherwise.
 inline bool is_as_described(const cause& found, const effect& e, const plant_model& as_given) {
     if (!found.described) return false;
     const std::size_t told = e.by_another_law > 1 ? 1 : found.parameters.size();
