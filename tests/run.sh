@@ -20,7 +20,7 @@ jobs=$(nproc 2>/dev/null || echo 2)
 
 fuzz_seconds=20          # of processor time, all fuzzers together
 tests=                   # CMake's QUADRANT_TESTS
-optimised=clang          # the preset of the phase release: the tests compile in a third of the time that g++ takes
+optimised=clang          # the preset of the phase release: a test compiles in half of the time that g++ takes
 large_pages=glibc.malloc.hugetlb=1 # of the memory of Clang: a sixth of its time
 together=13              # CMake's QUADRANT_TOGETHER: half of the processor time, and up to 3.1 GB a compiler
 

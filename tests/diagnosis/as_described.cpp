@@ -2,6 +2,7 @@
 #include "quadrant/diagnosis/which/as_described.hpp"
 #include "quadrant/diagnosis/effect/cogging.hpp"
 #include "quadrant/diagnosis/effect/drive_gain.hpp"
+#include "quadrant/diagnosis/effect/presliding_friction.hpp"
 #include "workshop.hpp"
 
 #include <doctest/doctest.h>
@@ -54,4 +55,25 @@ TEST_CASE("as described: every number is, or the effect is another one") {
     cause unknown = found({{"cogging_N", {same}}});
     unknown.described = false;
     CHECK_FALSE(detail::is_as_described(unknown, suspect::cogging, file));
+}
+
+TEST_CASE("as described: of a contact whose law others imitate its length decides") {
+    axis_description axis;
+    axis.plant.mass_kg = 10;
+    axis.plant.coulomb_N = 20;
+    axis.plant.presliding_length_m = 8e-6;
+    const plant_model file(axis, workshop::usual.give());
+    const auto read = suspect::presliding_friction.read(file);
+    REQUIRE(read.size() > 1);
+    std::vector<parameter_estimate> values;
+    for (const key_value& k : read) { // every number but the length is far from the file's
+        parameter_estimate p{k.key, {}};
+        for (const double v : k.values) p.values.push_back({2 * v, 1.9 * v, 2.1 * v});
+        values.push_back(p);
+    }
+    const double length = read.front().values.front();
+    values.front().values.front() = {1.2 * length, 0.5 * length, 3 * length};
+    CHECK(detail::is_as_described(found(values), suspect::presliding_friction, file));
+    values.front().values.front() = {2 * length, 1.5 * length, 3 * length};
+    CHECK_FALSE(detail::is_as_described(found(values), suspect::presliding_friction, file));
 }

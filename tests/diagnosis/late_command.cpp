@@ -187,7 +187,7 @@ TEST_CASE(
     "three rows, or makes a low-pass of them") {
     workshop::machine as_described;
     as_described.delay = 0;
-    const plant_description same = workshop::described(as_described).axes[0].plant;
+    const plant_description file = workshop::described(as_described).axes[0].plant;
     const auto late = [&](const std::function<void(workshop::machine&)>& change, long rows) {
         workshop::machine m = as_described;
         change(m);
@@ -196,11 +196,11 @@ TEST_CASE(
         return log;
     };
     const auto lateness = [&](const std::function<void(workshop::machine&)>& change, long rows) {
-        return lateness_of_command(late(change, rows), workshop::period, same, command_origin::measured) /
+        return lateness_of_command(late(change, rows), workshop::period, file, command_origin::measured) /
                workshop::period;
     };
     const auto low_pass = [&](const std::function<void(workshop::machine&)>& change, long rows) {
-        return low_pass_of_command(late(change, rows), workshop::period, same).has_value();
+        return low_pass_of_command(late(change, rows), workshop::period, file).has_value();
     };
     const auto mode = [](double mass, double frequency, double damping) {
         return [=](workshop::machine& m) {

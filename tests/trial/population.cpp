@@ -217,3 +217,7 @@ TEST_CASE(
     CHECK_NOTHROW(check_match(machine, quadrant::diagnosis::read_log(text, "log.csv")));
     for (std::size_t k = 0; k < 20; ++k) CHECK(std::abs(record[0].position[k] - record[0].reference[k]) < 1e-3);
 }
+TEST_CASE("population: a seed draws the same machine by every compiler") { // written by g++, run by Clang, too
+    const drawn_machine m = draw(20270107, 1, plan(20270107, 14).at(1));
+    CHECK(m.effects.at(0).size == doctest::Approx(1.14059674).epsilon(1e-6));
+}

@@ -8,7 +8,7 @@
 
 namespace quadrant_cnc {
 
-/// What a line of a response needs to be used.
+/// The least coherence of a line that is used.
 inline constexpr double least_coherence = 0.5;
 
 /// A frequency response that a user measured: position over command, in metres per volt.

@@ -21,14 +21,14 @@ void tune(const tune_options& o) {
             fmt::format("servo_period_s: --threshold {:.9g} Hz must be below half the servo rate ({:.9g} Hz)",
                         o.threshold_Hz, 0.5 / cnc.servo_period_s));
     std::vector<axis_tuning> all;
-    std::string axes;
+    std::string axis_names;
     for (const axis_description& a : cnc.axes) {
-        axes += fmt::format("{}{}", axes.empty() ? "" : ", ", a.name());
+        axis_names += fmt::format("{}{}", axis_names.empty() ? "" : ", ", a.name());
         if (o.axis.empty() || o.axis == a.name()) all.push_back(tune_axis(cnc, a, stroke));
     }
     if (all.empty())
-        throw quadrant::diagnosis::bad_input(cnc.file,
-                                             fmt::format("axes: has no axis {}; it has {}", o.axis, axes));
+        throw quadrant::diagnosis::bad_input(
+            cnc.file, fmt::format("axes: has no axis {}; it has {}", o.axis, axis_names));
     if (!o.report.empty())
         quadrant_page::write_output(o.report, html_report(all, cnc.file, cnc.servo_period_s));
     if (!o.json.empty())

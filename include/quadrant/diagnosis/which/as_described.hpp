@@ -8,13 +8,14 @@
 #include <numbers>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace quadrant::inline v0::diagnosis::detail {
 
 /// What a model has under a key of an effect; nothing: no such key. An effect of one of several numbers reads
 /// the one that differs.
-inline std::vector<double> values_of(const effect& e, plant_model model, std::string_view key) {
+inline std::vector<double> values_of(const effect& e, plant_model& model, std::string_view key) {
     for (key_value& read : e.read(model))
         if (read.key == key) return std::move(read.values);
     for (const machine_key& k : e.keys)
@@ -25,7 +26,7 @@ inline std::vector<double> values_of(const effect& e, plant_model model, std::st
 /// Whether what was found of an effect does not say that its numbers are others than the file's: each
 /// described one is in the interval of its value. Of a law that others imitate the first one decides, whose
 /// interval is as wide as they read it otherwise.
-inline bool is_as_described(const cause& found, const effect& e, const plant_model& as_given) {
+inline bool is_as_described(const cause& found, const effect& e, plant_model as_given) {
     if (!found.described) return false;
     const std::size_t told = e.by_another_law > 1 ? 1 : found.parameters.size();
     for (const parameter_estimate& p : std::span(found.parameters).first(told)) {
