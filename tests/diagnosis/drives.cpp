@@ -415,8 +415,7 @@ TEST_CASE("forecast: a velocity drive without a described controller has none, w
     REQUIRE(f.notes.size() == 1);
     CHECK(f.notes[0].find("without a controller") != std::string::npos);
 }
-TEST_CASE("velocity drive: one that switches itself off for half a second is found, with the times" *
-          doctest::test_suite("all")) {
+TEST_CASE("velocity drive: one that switches itself off for half a second is found, with the times") {
     auto m = p_drive;
     m.off_from = 4.3;
     m.off_until = 4.8;

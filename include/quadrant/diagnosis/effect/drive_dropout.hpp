@@ -44,6 +44,7 @@ inline constexpr effect drive_dropout{
     .box = "drive",
     .joins = joint::command,
     .exciting_motion = "the same motion again, with the drive's enable signal in the log",
+    .once = true,
     .shows = "the drive's whole force, in one part of the record only",
     .prior = {0.1, "over-temperature, over-current and loose plugs; most leave a message in the drive"},
     .remedy = "Read the drive's fault memory, and log its enable signal as the column `_enabled`.",

@@ -47,6 +47,8 @@ struct effect {
     /// A part of the friction that the file describes: where it describes none, this is free with the level,
     /// and no cause beside it.
     bool of_described_friction = false;
+    /// It happens once, at a time of this record: no other motion, and no other record, shows it again.
+    bool once = false;
     std::string_view shows{}; ///< as what it shows in the residual force
     key_list keys{};
     bool rotary_only = false;     ///< a linear axis cannot have it: no suspect there, and its keys are refused

@@ -90,11 +90,16 @@ inline void add_rest(diagnosis_result& out, const axis_case& c, const axis_resul
 }
 
 /// Claims that only some of the motions hold up are suspects: all of them where they do not surely shrink the
-/// gap together, and the one that takes least where it does not surely shrink what the others leave.
+/// gap together, and the one that takes least where it does not surely shrink what the others leave. What
+/// happened once no other motion can hold up.
 inline void suspect_by_chance(const how_far& shrinks, axis_case& c, std::vector<cause>& causes,
                               std::vector<std::vector<rival>>& rivals) {
+    const auto once = [](const effect* e) { return e->once; };
     while (c.claims > 0) {
-        const bool together = shrinks.surely_shrinks(c.models.given(), c.applied());
+        const auto claims = std::span(c.best().effects).first(c.claims);
+        if (once(claims.back())) return;
+        const bool together = std::any_of(claims.begin(), claims.end(), once) ||
+                              shrinks.surely_shrinks(c.models.given(), c.applied());
         if (together && (c.claims == 1 || shrinks.surely_shrinks(c.path[c.claims - 1], c.applied()))) return;
         to_suspects(together ? std::span(&causes[c.claims - 1], 1) : std::span(causes));
         put_as_applied(c, causes, rivals);
