@@ -66,6 +66,8 @@
 #include "fit/late_command.ipp"
 #include "fit/led_motion.hpp"
 #include "fit/led_motion.ipp"
+#include "fit/lost_set_points.hpp"
+#include "fit/lost_set_points.ipp"
 #include "fit/predictor.hpp"
 #include "fit/predictor.ipp"
 #include "fit/record.hpp"

@@ -17,6 +17,8 @@ inline constexpr effect position_dependent_friction{
     .box = "mechanics",
     .joins = joint::friction,
     .exciting_motion = "the same slow stroke in both directions over the whole travel",
+    .equivalent = {"load_friction"},               // the weight of a joint loads it by its angle
+    .ends_inside = {"friction_position_period_m"}, // a trend along the travel, or another law, has no period
     .shows = "friction whose level varies along the travel",
     .keys = {machine_key{.name = "friction_position_amplitude",
                          .rule = detail::rule::asymmetry,

@@ -3,6 +3,8 @@
 #include "effect.hpp"
 #include "rules.hpp"
 
+#include <functional>
+
 namespace quadrant::inline v0::diagnosis::detail {
 
 /// Whether one gain is above another by more than a margin, and not in a few places only: the scatter of the
@@ -17,15 +19,35 @@ inline bool everywhere(const std::vector<double>& gain, const std::vector<double
     return n >= 4 && sum >= rules{}.margin && sum >= 2.33 * std::sqrt(squares * n / (n - 1));
 }
 
+/// The probability of a loss, counted and not fitted, where pulses in most places speak for losses clearly more
+/// than for none and than for pulses of half or twice the size or turned over. `with`: what is found with
+/// pulses of a size.
+inline std::vector<std::vector<parameter>> counted_losses(const char* key, double& (*of)(plant_model&),
+                                                          const std::function<lossy_commands(double)>& with) {
+    const lossy_commands found = with(1);
+    const double p = found.probability;
+    if (found.told < 50 || p > 0.4) return {}; // no drive runs like that: something else makes the pulses
+    if (!everywhere(found.gain_by_place, std::vector<double>(found.gain_by_place.size(), 0.0))) return {};
+    for (double other : {-1.0, 0.5, 2.0})
+        if (!everywhere(found.gain_by_place, with(other).gain_by_place)) return {};
+    return {{{.key = key,
+              .of = of,
+              .start = p,
+              .low = p / 2,
+              .high = 2 * p,
+              .logarithmic = true,
+              .step = 1e-2,
+              .expected = std::log(p),
+              .spread = std::sqrt((1 - p) / (p * found.told))}}};
+}
+
 } // namespace quadrant::inline v0::diagnosis::detail
 
 namespace quadrant::inline v0::diagnosis::suspect {
 
 /// In some periods the drive keeps the previous command: a bus telegram that came too late. Joins the actuator.
-/// Shows as pulses as large as what the command changed by in that period; see sample_loss.hpp for how they are
-/// found. A suspect when they speak for a loss clearly more than for none and than for pulses of half or twice
-/// the size or turned over, and
-/// in most places: losses know nothing of the motion.
+/// Shows as pulses as large as what the command changed by in that period; see model/sample_loss.hpp for how
+/// they are found. They are in most places: losses know nothing of the motion.
 inline constexpr effect sample_loss{
     .name = "sample_loss",
     .label = "loss of command samples",
@@ -52,25 +74,11 @@ inline constexpr effect sample_loss{
         std::vector<double> without;
         if (s.leader.loss > 0) s.record.observer.run(plant, without);
         const auto& innovation = s.leader.loss > 0 ? without : s.innovation;
-        const auto with = [&](double size) {
-            return s.record.observer.commands_with_loss(plant, innovation, {.learned = true, .size = size});
-        };
-        const lossy_commands found = with(1);
-        const double p = found.probability;
-        if (found.told < 50 || p > 0.4) return {}; // no drive runs like that: something else makes the pulses
-        if (!detail::everywhere(found.gain_by_place, std::vector<double>(found.gain_by_place.size(), 0.0)))
-            return {};
-        for (double other : {-1.0, 0.5, 2.0})
-            if (!detail::everywhere(found.gain_by_place, with(other).gain_by_place)) return {};
-        return {{{.key = "actuator.loss_probability",
-                  .of = [](plant_model& q) -> double& { return q.loss; },
-                  .start = p,
-                  .low = p / 2,
-                  .high = 2 * p,
-                  .logarithmic = true,
-                  .step = 1e-2,
-                  .expected = std::log(p), // counted, not fitted
-                  .spread = std::sqrt((1 - p) / (p * found.told))}}};
+        return detail::counted_losses(
+            "actuator.loss_probability", [](plant_model& q) -> double& { return q.loss; },
+            [&](double size) {
+                return s.record.observer.commands_with_loss(plant, innovation, {.learned = true, .size = size});
+            });
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
         return {{"actuator.loss_probability", {p.loss}}};

@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "drive_suspect.hpp"
-
-namespace quadrant::inline v0::diagnosis::detail {
-
-/// Probability above which no drive follows its set-points.
-inline constexpr double most_lost = 0.5;
-
-} // namespace quadrant::inline v0::diagnosis::detail
+#include "sample_loss.hpp"
 
 namespace quadrant::inline v0::diagnosis::suspect {
 
-/// Some set-points never arrive, and the drive repeats the one before. Joins the drive. Which they were is not
-/// known: a model has what they do on average, a set-point that lags by p / (1 - p) periods. Above one half
-/// this is more than a period: no jitter around the newest set-point, but a delay or a filter. No drive runs
-/// so: at one half three in a row are lost every 14 periods, and drives stop with a communication fault after
-/// a few missed ones.
+/// Some set-points never arrive, and the drive repeats the one before. Joins the drive. Shows as pulses as large
+/// as what the set-points changed by; which ones they were is found like lost commands (model/sample_loss.hpp),
+/// in what was measured behind the drive where something was, else in the path.
 inline constexpr effect set_point_loss{
     .name = "set_point_loss",
     .label = "lost set-points",
@@ -36,15 +28,27 @@ inline constexpr effect set_point_loss{
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         if (s.leader.drive.kind != drive_kind::position && s.leader.drive.kind != drive_kind::position_servo)
             return {};
-        return {{{.key = "drive.set_point_loss",
-                  .of = [](plant_model& p) -> double& { return p.drive.loss; },
-                  .start = 0.1,
-                  .low = 0,
-                  .high = detail::most_lost,
-                  .step = 1e-3}}};
+        plant_model plant = s.leader;
+        plant.drive.loss = 0;
+        plant.drive.received.reset();
+        std::vector<double> without;
+        if (s.leader.drive.loss > 0) s.record.observer.run(plant, without);
+        const auto& innovation = s.leader.drive.loss > 0 ? without : s.innovation;
+        return detail::counted_losses(
+            "drive.set_point_loss", [](plant_model& p) -> double& { return p.drive.loss; },
+            [&](double size) {
+                return s.record.observer.set_points_with_loss(plant, innovation,
+                                                              {.learned = true, .size = size});
+            });
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
         return {{"drive.set_point_loss", {p.drive.loss}}};
-    }};
+    },
+    .join =
+        [](plant_model& p, const screening& s) {
+            constexpr double some = 0.05; // the share is learned
+            p.drive.loss = some;
+            p.drive.received = s.record.observer.received(p);
+        }};
 
 } // namespace quadrant::inline v0::diagnosis::suspect

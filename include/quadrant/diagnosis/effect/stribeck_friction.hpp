@@ -13,6 +13,7 @@ inline constexpr effect stribeck_friction{
     .box = "mechanics",
     .joins = joint::friction,
     .exciting_motion = "slow reversals and constant speeds from creep to a few times the Stribeck velocity",
+    .ends_inside = {"stribeck_velocity_m_per_s"}, // slower than the record shows, it is the give of the contact
     .shows = "grows as the axis gets slower",
     .keys = {machine_key{.name = "static_N",
                          .rule = detail::rule::not_negative,

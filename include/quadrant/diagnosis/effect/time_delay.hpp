@@ -34,15 +34,21 @@ inline constexpr effect time_delay{
               .high = 0.02,
               .into = [](trial_machine& m) { m.set("delay_s", m.now("delay_s") + m.amplitude); }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
-        const double t = s.record.period;
+        const double t = s.record.period, response = s.record.scale.response(), now = s.leader.delay;
+        double& (*const of)(plant_model&) = [](plant_model& p) -> double& { return p.delay; };
+        // The lower end, inside one period; a delay to which the loop responds; and what looking finds: no slope
+        // leads over the cycles of a command that is far too late.
+        std::vector<double> starts{now + 0.1 * t, now + 0.4 * response}, far;
+        for (double times : {1.0, 1.6, 2.5, 4.0, 6.0, 9.0, 13.0}) far.push_back(now + times * response);
+        const double best = detail::best_start(s, of, far);
+        if (best > far.front()) starts.push_back(best);
         std::vector<std::vector<parameter>> out;
-        // The lower end, inside one period, and a delay to which the loop responds.
-        for (double extra : {0.1 * t, 0.4 * s.record.scale.response()})
+        for (double start : starts)
             out.push_back({{.key = "delay_s",
-                            .of = [](plant_model& p) -> double& { return p.delay; },
-                            .start = s.leader.delay + extra,
+                            .of = of,
+                            .start = start,
                             .low = 0,
-                            .high = s.leader.delay + 4 * s.record.scale.response(),
+                            .high = now + 20 * response,
                             .step = 0.02 * t}});
         return out;
     },

@@ -96,6 +96,12 @@ struct predictor {
     /// show it.
     lossy_commands commands_with_loss(const plant_model& plant, const std::vector<double>& innovation,
                                       const loss_assumption& a) const;
+    /// The same of the set-points of a drive with loops of its own: a lost one repeats the one before. `plant`
+    /// loses none. What a lost set-point does is looked up in the model, at the largest steps of this record.
+    lossy_commands set_points_with_loss(const plant_model& plant, const std::vector<double>& innovation,
+                                        const loss_assumption& a) const;
+    /// The set-points that the drive of this plant received of those of this record.
+    std::shared_ptr<const received_set_points> received(const plant_model& plant) const;
 
 private:
     /// Which joints of a plant take time, one bit each, those that take most first.
@@ -119,6 +125,13 @@ private:
     /// Innovations after one volt too much in one period, on a free axis, until the observer has forgotten it.
     std::vector<double> loss_response(const plant_model& plant) const;
 
+    /// The same record with other set-points.
+    predictor on(const driven_motion& other) const {
+        predictor out = *this;
+        out.drive = &other;
+        return out;
+    }
+
     /// The command of each plant's actuator, and its innovations behind the drive. Plants with one drive share
     /// its replay.
     void drive_each(std::span<const plant_model> plants, std::array<std::vector<double>, abreast>& own,
@@ -138,5 +151,6 @@ private:
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "closed_pass.ipp"
 #    include "led_motion.ipp"
+#    include "lost_set_points.ipp"
 #    include "predictor.ipp"
 #endif

@@ -45,7 +45,7 @@ QUADRANT_DIAGNOSIS_DECL double predictor::run(const plant_model& plant, std::vec
         return held.choices;
     }
     pass(one, command, into, acceleration);
-    return 0;
+    return plant.drive.losses_known() ? plant.drive.received->choices : 0;
 }
 
 QUADRANT_DIAGNOSIS_DECL unsigned predictor::joints_of(const plant_model& p) const {
@@ -69,6 +69,8 @@ QUADRANT_DIAGNOSIS_DECL void predictor::run(std::span<const plant_model> plants,
     for (std::size_t i = 0; i < plants.size(); ++i) {
         if (plants[i].loss == 0) {
             order.push_back(i);
+            if (!choices.empty() && plants[i].drive.losses_known())
+                choices[i] = plants[i].drive.received->choices;
             continue;
         }
         const double chosen = run(plants[i], innovation[i], acceleration.empty() ? nullptr : &acceleration[i]);

@@ -96,7 +96,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> how_far::loop_errors() const {
     std::optional<controller_description> controller;
     if (case_.axis.controller) controller = case_.mended();
     for (const candidate& model : case_.path) {
-        if (model.fit.plant.loss > 0) return {};
+        if (model.fit.plant.loss > 0 || model.fit.plant.drive.loss > 0) return {};
         const auto run = loop(plant_of(model), controller);
         if (!run) return {};
         const std::vector<double> all(judged_.segments, 1.0);

@@ -141,7 +141,8 @@ std::vector<double> run_closed(const plant_model& plant, const driven_motion& mo
     closed_axis<double, plant_axis> axis(axis_parameters(plant), loops_of(plant.drive, motion.constant), h);
     axis.begin(motion.position[0], velocity, motion.set_point[0]);
     auto anew = motion.begins.begin();
-    std::vector<double> set_point = motion.set_point, command(n);
+    const auto received = motion.set_points_of(plant.drive);
+    std::vector<double> set_point(received.begin(), received.end()), command(n);
     set_point_clock clock(plant.drive, set_point, period, motion.begins);
     const double late = plant.drive.delay / period;
     std::size_t first = 0; // row of the log that runs

@@ -4,6 +4,9 @@
 #include "../../drive/position_servo.hpp"
 #include "../machine/drive_description.hpp"
 
+#include <memory>
+#include <vector>
+
 namespace quadrant::inline v0::diagnosis {
 
 /// How what is measured behind a drive belongs to its row: read as the row begins, before or after the drive
@@ -19,6 +22,12 @@ struct reading_times {
     tap_reading tap = tap_reading::before_set_point; ///< of a drive with a velocity loop
 
     bool operator==(const reading_times&) const = default;
+};
+
+/// The set-points of one record that a drive acted on, when it lost some.
+struct received_set_points {
+    std::vector<double> values; ///< one a row
+    double choices = 0;         ///< what it takes to say which were lost [nats], see lossy_commands
 };
 
 /// The drive of a plant model: the numbers that a fit may move, neutral where nothing is described. SI, in the
@@ -44,6 +53,8 @@ struct drive_model {
     double start_force = 0; ///< of the velocity loop's integral at the first row, which no file can know [N]
 
     reading_times read{};
+    /// Null: every set-point as it was sent, or what `loss` does to it on average.
+    std::shared_ptr<const received_set_points> received{};
 
     drive_model() = default;
     explicit drive_model(const drive_description& d)
@@ -60,6 +71,8 @@ struct drive_model {
           supply(d.supply_V.value_or(1)) {}
 
     bool operator==(const drive_model&) const = default;
+    /// Whether it is known which set-points were lost.
+    bool losses_known() const { return received && loss > 0; }
     bool closes() const { return kind != drive_kind::current; }
     bool has_velocity_loop() const { return kind == drive_kind::velocity || kind == drive_kind::position; }
     /// Whether its registers are read one after another; other drives take all readings of a row at once.

@@ -27,8 +27,8 @@ public:
     /// `values`: one a row, `period` seconds apart; `others`: the logs behind the first one.
     set_point_clock(const drive_model& d, std::span<const double> values, double period,
                     std::span<const log_start> others)
-        : values_(values), others_(others), line_(d.between), loss_(std::clamp(d.loss, 0.0, 1.0)),
-          delay_((d.delay + d.read.age) / period),
+        : values_(values), others_(others), line_(d.between),
+          loss_(d.losses_known() ? 0 : std::clamp(d.loss, 0.0, 1.0)), delay_((d.delay + d.read.age) / period),
           every_((d.set_point_period > 0 ? d.set_point_period / period : 1) *
                  (1 + std::clamp(d.clock_slip, -0.5, 0.5))),
           state_(line_state::at(values[0])) {}
@@ -52,7 +52,8 @@ public:
             }
             if (from < b) arrive();
         }
-        return {out.value / (b - a), out.velocity / (b - a) / every_};
+        const double mean = 1 / (b - a);
+        return {out.value * mean, out.velocity * (mean / every_)};
     }
 
 private:
@@ -103,11 +104,13 @@ public:
         return *this;
     }
 
-    /// `set_point`: one a row, the same in every call; `others`: the logs behind the first one, likewise.
+    /// `set_point`: one a row, the same in every call for drives that received the same; `others`: the logs
+    /// behind the first one, likewise.
     std::shared_ptr<const followed_set_points> of(const drive_model& d, std::size_t steps,
                                                   std::span<const double> set_point, double period,
                                                   std::span<const log_start> others) const {
-        const timing asked{d.between, d.set_point_period, d.delay + d.read.age, d.loss, d.clock_slip, steps};
+        const timing asked{d.between, d.set_point_period, d.delay + d.read.age, d.loss, d.clock_slip,
+                           steps,     d.received};
         {
             const std::lock_guard lock(mutex_);
             for (const auto& [of, points] : kept_)
@@ -131,21 +134,20 @@ private:
         interpolation between;
         double set_point_period, delay, loss, clock_slip;
         std::size_t steps;
+        std::shared_ptr<const received_set_points> received;
         bool operator==(const timing&) const = default;
     };
     static followed_set_points follow(const drive_model& d, std::size_t steps,
                                       std::span<const double> set_point, double period,
                                       std::span<const log_start> others) {
-        followed_set_points out;
-        set_point_clock clock(d, set_point, period, others);
         const std::size_t all = set_point.size() * steps;
-        out.value.reserve(all);
-        out.velocity.reserve(all);
+        followed_set_points out{std::vector<double>(all), std::vector<double>(all)};
+        set_point_clock clock(d, set_point, period, others);
         for (std::size_t j = 0; j < all; ++j) {
             const double begin = static_cast<double>(j) / static_cast<double>(steps);
             const auto r = clock.between(begin, begin + 1 / static_cast<double>(steps));
-            out.value.push_back(r.value);
-            out.velocity.push_back(r.velocity / period);
+            out.value[j] = r.value;
+            out.velocity[j] = r.velocity / period;
         }
         return out;
     }
@@ -208,10 +210,15 @@ struct driven_motion {
     }
     bool is_off(std::size_t k) const { return !off.empty() && off[k]; }
     bool tapped() const { return !measured.empty(); }
+    /// What this drive received, where that was found of this record; else what was sent.
+    std::span<const double> set_points_of(const drive_model& d) const {
+        const bool here = d.losses_known() && d.received->values.size() == set_point.size();
+        return here ? d.received->values : set_point;
+    }
 
     /// What the loops of this drive follow in each step of each row, in the unit of `set_point`.
     std::shared_ptr<const followed_set_points> follows(const drive_model& d, std::size_t steps) const {
-        return memory.of(d, steps, set_point, period, begins);
+        return memory.of(d, steps, set_points_of(d), period, begins);
     }
 
     /// What the law of this drive gives in each part of each row: duty of a position servo, else force [N].
@@ -279,6 +286,7 @@ struct driven_motion {
 private:
     /// Share of a part of a row in which this drive is on.
     double share_on(const drive_model& d, std::size_t part) const {
+        if (!(d.off_until > d.off_from)) return 1;
         const double length = period / parts, begin = static_cast<double>(part) * length;
         const double silent = std::min(begin + length, d.off_until) - std::max(begin, d.off_from);
         return 1 - std::clamp(silent / length, 0.0, 1.0);
@@ -326,7 +334,7 @@ private:
         const double before = d.read.tap == tap_reading::before_set_point ? moment : 0,
                      scale = in_volts ? d.velocity_per_V : 1;
         const auto points = follows(d, parts);
-        set_point_clock clock(d, set_point, period, begins);
+        set_point_clock clock(d, set_points_of(d), period, begins);
         std::vector<double> out(measured.size());
         for (std::size_t k = 0; k < out.size(); ++k) {
             const double row = static_cast<double>(k), part = std::max(0.0, row * parts - 0.5);

@@ -122,10 +122,12 @@ inline const char* in_words(tap_reading way) {
     return "the mean over a row";
 }
 
-/// Takes what was found with another way of reading the tap where it is better, and says so.
+/// Takes what was found with another way of reading the tap where it is better, or as good with fewer names,
+/// and says so.
 inline void take_other_tap(std::unique_ptr<axis_case>& found, std::unique_ptr<axis_case> other, double margin,
                            std::vector<std::string>& notes) {
-    if (!(other->best().total > found->best().total + margin)) return;
+    const bool fewer = other->best().effects.size() < found->best().effects.size();
+    if (!(other->best().total > found->best().total + (fewer ? 0 : margin))) return;
     found = std::move(other);
     notes.push_back(fmt::format("axis {}: what was measured in the drive is taken as {}: beside what was "
                                 "found that fits better than what fits the described machine.",

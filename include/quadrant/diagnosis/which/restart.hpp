@@ -8,9 +8,11 @@ namespace quadrant::inline v0::diagnosis {
 /// A model as it runs in another log. A process that turns has no memory of the first log: where in its cycle
 /// the other one begins is found again, everything else stays as fitted. Costs some forty passes, when there is
 /// a process at all. Of a drive, the force that its integral holds at the first row and the moments at which
-/// its registers were read are found again, and what happened in the first record did not happen here.
+/// its registers were read are found again, and which set-points it lost; what happened in the first record did
+/// not happen here.
 inline plant_model restarted(plant_model plant, const axis_record& record) {
     plant.drive.off_from = plant.drive.off_until = 0;
+    if (plant.drive.losses_known()) plant.drive.received = record.observer.received(plant);
     if (plant.drive.has_integral()) {
         const fitter fit(record.observer, record.score);
         // What a drive at rest holds; or what it held in the first log, of a force that no model has.
