@@ -104,9 +104,10 @@ inline constexpr effect structural_resonance{
                   }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double m = s.leader.mass, corner = s.record.scale.corner_Hz, highest = 0.3 / s.record.period;
-        // A slower mode, or one that a third of its critical damping keeps from ringing, does what any force
-        // does that the model lacks.
-        const double lowest = 0.25 * corner;
+        // A mode that a third of its critical damping keeps from ringing does what any force does that the model
+        // lacks; so does one far below the corner unless it rings for long, and one of a few cycles a record.
+        const double record = static_cast<double>(s.record.position.size()) * s.record.period;
+        const double lowest = std::max(0.01 * corner, 5 / record);
         std::vector<std::vector<parameter>> out;
         for (double f : detail::ringing_frequencies(s, lowest, highest, 3))
             for (double share : {0.03, 0.2, 0.33, 0.5}) // the axis rings above the frequency of the mode alone
@@ -128,7 +129,7 @@ inline constexpr effect structural_resonance{
                                 .of = [](plant_model& p) -> double& { return p.mode.damping; },
                                 .start = 0.05,
                                 .low = 0.002,
-                                .high = 0.33,
+                                .high = f < 0.25 * corner ? 0.1 : 0.33,
                                 .logarithmic = true,
                                 .step = 1e-2}});
         return out;

@@ -116,8 +116,10 @@ QUADRANT_DIAGNOSIS_DECL std::unique_ptr<running_controller> begun(const running_
 /// The controller box alone, one stretch of a record without gaps: fed the logged reference and position, it
 /// puts out what the described controller would have commanded. Row 0 is taken from the log. What went before
 /// it is unknown, at rest too: the noise of the encoder is in the first command by way of the velocity. What
-/// that leaves open of the initial integral is a constant offset of the replay, which a second pass takes from
-/// the record up to where the command reaches its limit, which the integral does not outlive. A law that
+/// that leaves open of the initial integral is a constant offset of the replay, which further passes take from
+/// the record up to where the command reaches its limit, which the integral does not outlive: one pass, and up
+/// to three more where two rows of a coarse encoder say a velocity that takes the integral to its limit. A law
+/// that
 /// follows from what it applied is told so by the log. Rows that a controller is only shown, and those whose
 /// look-ahead ends behind the log, are the logged ones.
 QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_stretch(const controller_description& c,

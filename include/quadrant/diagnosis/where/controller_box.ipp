@@ -61,10 +61,18 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_stretch(const controller_desc
     };
     const std::size_t forgotten = pass(0);
     if (!fresh->remembers()) return out;
-    std::vector<double> offset(out.size());
-    for (std::size_t k = 0; k < out.size(); ++k) offset[k] = log.command[k] - out[k];
+    const std::vector<double> as_begun = out;
     const auto with_offset_of = [&](std::size_t rows) { // the replay, and the square of what it leaves
-        pass(quantile({offset.begin(), offset.begin() + static_cast<std::ptrdiff_t>(rows)}, 0.5));
+        constexpr int rounds = 4;                       // one does, unless the limit cut the first integral off
+        out = as_begun;
+        double offset = 0;
+        for (int round = 0; round < rounds; ++round) {
+            std::vector<double> more(rows);
+            for (std::size_t k = 0; k < rows; ++k) more[k] = log.command[k] - out[k];
+            const double missing = quantile(std::move(more), 0.5);
+            if (round > 0 && std::abs(missing) <= 1e-3 * std::abs(offset)) break;
+            pass(offset += missing);
+        }
         double sum = 0;
         for (std::size_t k = 0; k < out.size(); ++k) sum += square(log.command[k] - out[k]);
         return std::pair(out, sum);

@@ -63,7 +63,8 @@ QUADRANT_DIAGNOSIS_DECL void model_fits::sketch_each(const candidate& from,
     const fitter fit(record_.observer, record_.score);
     const bool bent = record_.replayed() && from.stops_at_a_tolerance();
     const auto begins_as_described = [&](std::size_t i) {
-        return bent || models[i].effects.back()->bends_calibration;
+        const effect& e = *models[i].effects.back();
+        return bent || e.bends_calibration || is_beyond_tolerance(from, e);
     };
     std::vector<candidate> origins{from};
     if (std::any_of(which.begin(), which.end(), begins_as_described)) origins.push_back(as_described(from));
@@ -140,7 +141,9 @@ QUADRANT_DIAGNOSIS_DECL void model_fits::finish_near(const std::vector<std::size
     if (!(most > rules_.margin)) return;
     std::vector<std::size_t> near;
     for (std::size_t j = std::min(fitted, which.size()); j < which.size(); ++j)
-        if (models[which[j]].total - from.total > rules_.near_best * most) near.push_back(which[j]);
+        if (models[which[j]].total - from.total > rules_.near_best * most ||
+            is_beyond_tolerance(from, *models[which[j]].effects.back()))
+            near.push_back(which[j]);
     const auto fit = [&](std::span<const std::size_t> some) {
         if (over()) return;
         std::vector<candidate*> each;
