@@ -24,6 +24,7 @@ struct machine {
     double off_from = 0, off_until = 0; ///< the drive gives nothing then [s]
     double clock_slip = 0;              ///< its clock's period is longer by this share
     int rows_of_a_set_point = 1;        ///< it takes a new one after so many rows
+    double lost = 0;                    ///< share of the set-points that never arrive
     bool enabled_column = false;
     double force_of_current = 0;  ///< [N/A]: the drive's current is logged, too; 0: it is not
     bool current_is_mean = false; ///< over the row; else as the row begins
@@ -62,7 +63,8 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
     const auto reference = strokes(period, 10, pace);
     std::mt19937 random(seed);
     std::normal_distribution<double> noise(0, 0.3 * m.count);
-    std::vector<double> command;
+    std::vector<double> command, arrived; // what the drive holds from each set-point on
+    std::mt19937 dice(seed + 100);
     double x = 0, v = 0, felt = 0, integral = 0, followed = 0, last = 0;
     std::ostringstream out;
     out.precision(10);
@@ -99,11 +101,20 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
                 return static_cast<std::size_t>(std::max(0.0, n * every + 1e-9));
             };
             const std::size_t row = row_of(tick);
+            const auto taken = [&](double n) { // the set-point of a tick, or the last one that arrived
+                const auto last_tick = static_cast<std::size_t>(std::max(0.0, n));
+                while (arrived.size() <= last_tick) {
+                    const bool gone = !arrived.empty() && std::uniform_real_distribution()(dice) < m.lost;
+                    arrived.push_back(gone ? arrived.back()
+                                           : command[row_of(static_cast<double>(arrived.size()))]);
+                }
+                return arrived[last_tick];
+            };
             const double now = (static_cast<double>(k) + (i + 0.5) / steps) * period;
             const bool off = now >= m.off_from && now < m.off_until;
             double force = 0;
             if (kind == takes::servo) {
-                followed += std::clamp(command[row] - followed, -m.rate_limit * h, m.rate_limit * h);
+                followed += std::clamp(taken(tick) - followed, -m.rate_limit * h, m.rate_limit * h);
                 const double e = followed - x;
                 const double duty = std::clamp(m.duty_gain * e + (e > 0 ? 1 : -1) * m.minimum_duty, -1.0, 1.0);
                 if (tap && i == 0) out << ',' << duty;
@@ -111,10 +122,10 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
             } else if (kind == takes::force) {
                 force = command[row];
             } else {
-                const double part = at / every - tick, before = command[row_of(tick - 1)];
+                const double part = at / every - tick, before = taken(tick - 1);
                 const double asked = kind == takes::volts
-                                         ? m.velocity_per_V * command[row]
-                                         : m.position_gain * (before + part * (command[row] - before) - x);
+                                         ? m.velocity_per_V * taken(tick)
+                                         : m.position_gain * (before + part * (taken(tick) - before) - x);
                 const auto newest = static_cast<std::size_t>(std::max(0.0, at)); // a force is held over a row
                 const auto within = [&](double f) { return std::clamp(f, -m.force_limit, m.force_limit); };
                 felt += m.velocity_filter > h ? h / m.velocity_filter * (v - felt) : v - felt;

@@ -54,6 +54,21 @@ TEST_CASE("structural_resonance: a mode of half of the mass explains a record of
     CHECK(workshop::claims(d) == std::vector<std::string>{"structural_resonance"});
 }
 
+TEST_CASE("structural_resonance: a mode far below the corner that rings for long is found") {
+    workshop::machine real;
+    auto file = workshop::described(real);
+    real.mode_mass = real.mass / 4;
+    real.mass -= real.mode_mass;
+    real.mode_frequency = 5;
+    real.mode_damping = 0.03;
+    const auto log = workshop::run(real);
+    const auto scales = scales_of(file.axes.front().plant, log, workshop::period, workshop::count);
+    REQUIRE(real.mode_frequency < scales.corner_Hz / 8);
+    const auto d = diagnose(file, workshop::as_log(log));
+    CAPTURE(workshop::said(d));
+    CHECK(workshop::claims(d) == std::vector<std::string>{"structural_resonance"});
+}
+
 TEST_CASE("structural_resonance: led along the motion, a second mass needs its share of the force") {
     const workshop::machine real;
     const auto axis = workshop::described(real).axes.front();

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSL-1.0
+// When the set-points of a position drive arrive, and whether they do (drive_simulator.hpp).
+#include "drive_simulator.hpp"
+#include "shared.hpp"
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+#include <quadrant/diagnosis/diagnose.hpp>
+#include <quadrant/diagnosis/fit/for_machine.hpp>
+#include <quadrant/diagnosis/fit/with_drives.hpp>
+#include <quadrant/diagnosis/read_log.hpp>
+#include <quadrant/diagnosis/read_machine.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+using namespace quadrant::diagnosis;
+
+namespace {
+
+constexpr double period = 1e-3;
+const drive_simulator::machine real{.mass = 20,
+                                    .coulomb = 16,
+                                    .viscous = 20,
+                                    .gain = 20 * 2 * std::numbers::pi * 30,
+                                    .position_gain = 40,
+                                    .delay = 2e-3};
+
+machine_description described(const drive_simulator::machine& m) {
+    nlohmann::json q;
+    q["plant"] = {{"mass_kg", m.mass}, {"viscous_N_s_per_m", m.viscous}, {"coulomb_N", m.coulomb}};
+    if (m.force_of_current > 0) q["plant"]["force_constant_N_per_A"] = m.force_of_current;
+    q["tolerance"] = {{"mass", 0.03},          {"viscous", 0.1},        {"coulomb", 0.08},
+                      {"velocity_gain", 0.05}, {"position_gain", 0.03}, {"command_delay", 0.1}};
+    q["encoder"] = {{"resolution_m", m.count}};
+    q["drive"] = {{"kind", "position"},
+                  {"interpolation", "linear"},
+                  {"velocity_gain_N_s_per_m", m.gain},
+                  {"position_gain_per_s", m.position_gain},
+                  {"command_delay_s", m.delay},
+                  {"set_point_period_s", m.rows_of_a_set_point * period}};
+    if (m.integral > 0) {
+        q["drive"]["velocity_integral_N_per_m"] = m.integral;
+        q["tolerance"]["velocity_integral"] = 0.05;
+    }
+    const nlohmann::json file{
+        {"schema", "quadrant.machine/1"}, {"sample_period_s", period}, {"axes", {{"q", q}}}};
+    return read_machine(file.dump(), "machine.json");
+}
+machine_log recorded(const drive_simulator::machine& m, double pace = 1, unsigned seed = 1) {
+    std::istringstream text(
+        drive_simulator::log(drive_simulator::takes::set_points, m, period, pace, seed, "m"));
+    return read_log(text, "log.csv");
+}
+diagnosis_result diagnosed(const machine_description& machine, const drive_simulator::machine& m) {
+    const machine_log log = recorded(m), holdout = recorded(m, 0.8, 2);
+    rules one;
+    one.threads = 1;
+    return diagnose(
+        machine, log, &holdout, [](const std::string&) {}, one);
+}
+/// The only cause, claimed; null: not so.
+const cause* only_claim(const diagnosis_result& d, const char* effect) {
+    const bool so = d.causes.size() == 1 && d.causes[0].effect == effect && d.causes[0].probability >= 0.5;
+    return so ? &d.causes[0] : nullptr;
+}
+double value_of(const cause& c, const std::string& key) {
+    for (const auto& p : c.parameters)
+        if (p.key == key) return p.values[0].value;
+    return std::nan("");
+}
+
+} // namespace
+
+TEST_CASE("set-point loss: the set-points that a drive lost are found, in its current and in its path") {
+    auto m = real;
+    m.lost = 0.06;
+    SUBCASE("current") { m.force_of_current = 12; }
+    SUBCASE("path") {
+        if (!all_tests()) return;
+    }
+    SUBCASE("current, an integral in the velocity loop, a set-point every four rows") {
+        if (!all_tests()) return;
+        m.force_of_current = 12;
+        m.integral = m.gain * 2 * std::numbers::pi * 6;
+        m.rows_of_a_set_point = 4;
+    }
+    const auto d = diagnosed(described(m), m);
+    const cause* loss = only_claim(d, "set_point_loss");
+    REQUIRE(loss);
+    CHECK(value_of(*loss, "drive.set_point_loss") == doctest::Approx(0.06).epsilon(0.2));
+    CHECK(loss->gap_after_force_rms_N.value < 0.4 * loss->gap_before_force_rms_N.value);
+}
+
+TEST_CASE("set-point loss: which ones were lost") {
+    auto m = real;
+    m.lost = 0.05;
+    m.force_of_current = 12;
+    const auto machine = described(m);
+    const auto log = recorded(m);
+    const auto whole = recorded(real); // the same reference, every set-point taken
+    const axis_log driven = detail::with_drive(machine.axes[0], log.axes[0], period);
+    const auto& axis = machine.axes[0];
+    const auto record =
+        for_machine(prepare(driven, period, m.count, scales_of(axis.plant, driven, period, m.count)), axis);
+    plant_model plant(axis, record.scale.give());
+    plant.drive.read = record.read;
+    plant.drive.loss = 0.05;
+    const auto received = record.observer.received(plant);
+    REQUIRE(received->values.size() == log.axes[0].reference.size());
+    const auto& sent = log.axes[0].reference;
+    // Of the rows whose set-point moved far, about as many as were lost hold the one before.
+    double moved = 0, held = 0, between = 0;
+    for (std::size_t k = 200; k + 200 < sent.size(); ++k) {
+        const double step = sent[k] - sent[k - 1];
+        if (std::abs(step) < 2e-5) continue;
+        const double share = (received->values[k] - sent[k]) / -step;
+        moved += 1;
+        held += share > 0.9;
+        between += share > 0.1 && share < 0.9;
+    }
+    REQUIRE(moved > 1000);
+    CHECK(held / moved == doctest::Approx(0.05).epsilon(0.25));
+    CHECK(between < 0.2 * held);
+    CHECK(received->choices > 0);
+}
+
+TEST_CASE("set-point loss: a drive that receives everything has lost nothing, where its gains are off too") {
+    auto m = real;
+    m.force_of_current = 12;
+    auto off = m;
+    off.gain *= 1.03;
+    off.position_gain *= 0.98;
+    off.delay *= 1.05;
+    const auto d = diagnosed(described(off), m);
+    CHECK(d.verdict <= verdict::within_tolerance);
+    CHECK(d.causes.empty());
+}
+
+TEST_CASE("command delay: beyond its tolerance it is fitted to the end, and no friction stands for it") {
+    auto m = real;
+    m.mass = 1500;
+    m.coulomb = 200;
+    m.viscous = 125;
+    m.gain = m.mass * 2 * std::numbers::pi * 15;
+    m.integral = m.gain * 2 * std::numbers::pi * 3;
+    m.position_gain = 19;
+    m.delay = 6e-3;
+    m.count = 2e-6;
+    auto off = m;
+    off.delay = 4.95e-3;
+    off.mass *= 0.985;
+    const auto d = diagnosed(described(off), m);
+    REQUIRE(!d.causes.empty());
+    CHECK(d.causes[0].effect == "command_delay");
+    CHECK(value_of(d.causes[0], "drive.command_delay_s") == doctest::Approx(6e-3).epsilon(0.02));
+    CHECK(d.causes.size() == 1);
+}
