@@ -306,7 +306,7 @@ TEST_CASE("diagnose: a short record is refused only where not one block of it ca
         said = e.what();
     }
     CHECK(said.starts_with("short.csv: " + std::to_string(log.samples) +
-                           " samples of axis x: a diagnosis needs at least "));
+                           " samples of axis x: a diagnosis needs "));
     CHECK(said.ends_with(", one block to start the observer and one to score"));
     for (const double seconds : {0.11, 0.2, 0.5, 1.0}) {
         CAPTURE(seconds);

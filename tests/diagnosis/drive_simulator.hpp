@@ -15,7 +15,8 @@
 namespace drive_simulator {
 
 struct machine {
-    double mass = 100, coulomb = 0, viscous = 0;                    ///< what the drive moves
+    double mass = 100, coulomb = 0, viscous = 0; ///< what the drive moves
+    double give = 0; ///< displacement by which the contact of its friction gives way [m]; 0: it does not
     double velocity_per_V = 0.02, gain = 0, integral = 0;           ///< velocity loop
     double position_gain = 0, duty_gain = 0, supply = 12, kt = 0.1; ///< position loop; position servo
     double minimum_duty = 0, rate_limit = 1e9, delay = 0, count = 1e-6;
@@ -65,7 +66,7 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
     std::normal_distribution<double> noise(0, 0.3 * m.count);
     std::vector<double> command, arrived; // what the drive holds from each set-point on
     std::mt19937 dice(seed + 100);
-    double x = 0, v = 0, felt = 0, integral = 0, followed = 0, last = 0;
+    double x = 0, v = 0, bristle = 0, felt = 0, integral = 0, followed = 0, last = 0;
     std::ostringstream out;
     out.precision(10);
     out << "t_s,q_ref_" << unit << ",q_pos_" << unit
@@ -139,8 +140,14 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
             mean_force += force / steps;
             if (i == 0) first_force = force;
             v += h * (force - m.viscous * v - m.gravity * std::sin(x) + m.constant - m.spring * x) / m.mass;
-            const double stop = h * m.coulomb / m.mass;
-            v -= std::clamp(v, -stop, stop);
+            if (m.give > 0) {
+                const double end = std::copysign(m.give, v);
+                bristle = end + (bristle - end) * std::exp(-std::abs(v) * h / m.give);
+                v -= h * m.coulomb * bristle / m.give / m.mass;
+            } else {
+                const double stop = h * m.coulomb / m.mass;
+                v -= std::clamp(v, -stop, stop);
+            }
             x += h * v;
         }
         const double t = static_cast<double>(k) * period;

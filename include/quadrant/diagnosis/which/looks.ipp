@@ -31,11 +31,12 @@ inline void need_blocks(const axis_case& c, const std::string& file) {
                         worded("%zu samples of axis %s%s: only %zu of them lie in pieces that are long "
                                "enough to be judged",
                                c.log.position.size() - out, c.axis.name.c_str(), in_pieces.c_str(), scored));
+    // The blocks lie at fixed rows: a piece of any beginning holds a whole one where it is a block longer.
+    const std::size_t needed = c.record.score.skip + (pieces < 2 ? 1 : 2) * blocks.block;
     throw bad_input(file,
-                    worded("%zu samples of axis %s%s: a diagnosis needs at least %zu in a row, one block to "
-                           "start the observer and one to score",
-                           c.log.position.size(), c.axis.name.c_str(), in_pieces.c_str(),
-                           c.record.score.skip + c.record.score.block));
+                    worded("%zu samples of axis %s%s: a diagnosis needs %zu in a row, some to start the "
+                           "observer and a block to score",
+                           c.log.position.size() - out, c.axis.name.c_str(), in_pieces.c_str(), needed));
 }
 
 /// Whether an axis is looked at again with models led along its motion: structure is left, and what was found
