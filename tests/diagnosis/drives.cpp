@@ -49,7 +49,7 @@ const std::string of_p = R"("kind": "velocity", "velocity_gain_N_s_per_m": 25132
 const std::string of_pi = of_p + R"(, "velocity_integral_N_per_m": 1263309.4)";
 const std::string of_position = R"("kind": "position", "velocity_gain_N_s_per_m": 25132.741,
     "velocity_integral_N_per_m": 1263309.4, "position_gain_per_s": 40, "interpolation": "linear")";
-const std::string of_servo = R"({"schema": "quadrant.machine/1", "sample_period_s": 0.002, "axes": {"q": {
+const std::string of_servo = R"({"schema": "quadrant.machine/1", "sample_period_s": 0.004, "axes": {"q": {
     "plant": {"inertia_kg_m2": 0.004, "viscous_Nm_s_per_rad": 0.01, "coulomb_Nm": 0.03,
               "torque_constant_Nm_per_V": 0.1},
     "tolerance": {"inertia": 0.05, "viscous": 0.2, "coulomb": 0.1, "torque_constant": 0.05, "position_gain": 0.03,
@@ -61,7 +61,7 @@ struct records {
     machine_log log, holdout;
 };
 records recorded(takes kind, const drive_simulator::machine& m, bool tap = false) {
-    const double period = kind == takes::servo ? 0.002 : 0.001;
+    const double period = kind == takes::servo ? 0.004 : 0.001;
     const std::string unit = kind == takes::servo ? "rad" : "m";
     const auto read = [&](double pace, unsigned seed) {
         std::istringstream text(drive_simulator::log(kind, m, period, pace, seed, unit, tap));

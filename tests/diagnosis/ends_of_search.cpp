@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-// Where the search for a number ends: far enough out for real machines, and a number that ends there is no claim.
+// Where the search for a number ends: far enough out for real machines; a number that ends there is no claim.
 #include "claims.hpp"
 #include "drive_simulator.hpp"
 

@@ -104,8 +104,8 @@ inline constexpr effect structural_resonance{
                   }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double m = s.leader.mass, corner = s.record.scale.corner_Hz, highest = 0.3 / s.record.period;
-        // A mode that a third of its critical damping keeps from ringing does what any force does that the model
-        // lacks; so does one far below the corner unless it rings for long, and one of a few cycles a record.
+        // A mode that a third of its critical damping keeps from ringing does what any force does that the
+        // model lacks; so does one far below the corner unless it rings for long, and one of a few cycles.
         const double record = static_cast<double>(s.record.position.size()) * s.record.period;
         const double lowest = std::max(0.01 * corner, 5 / record);
         std::vector<std::vector<parameter>> out;

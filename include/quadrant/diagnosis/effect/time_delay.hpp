@@ -36,7 +36,7 @@ inline constexpr effect time_delay{
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double t = s.record.period, response = s.record.scale.response(), now = s.leader.delay;
         double& (*const of)(plant_model&) = [](plant_model& p) -> double& { return p.delay; };
-        // The lower end, inside one period; a delay to which the loop responds; and what looking finds: no slope
+        // The lower end, inside one period; a delay to which the loop responds; what looking finds: no slope
         // leads over the cycles of a command that is far too late.
         std::vector<double> starts{now + 0.1 * t, now + 0.4 * response}, far;
         for (double times : {1.0, 1.6, 2.5, 4.0, 6.0, 9.0, 13.0}) far.push_back(now + times * response);

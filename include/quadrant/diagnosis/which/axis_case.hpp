@@ -75,10 +75,6 @@ public:
     /// Whether the hold-out log was kept from the fits, so that it tests what was fitted. Not so where its
     /// motion stands in `log`, too (both_motions()).
     bool tested_apart() const { return second && !(log.drive && !log.drive->begins.empty()); }
-    /// How the tap is read by what fits beside the causes that were found; none: nothing is tapped, or that is
-    /// the way that was taken. Where a cause bends the calibration, the choice beside the described machine may
-    /// be wrong.
-    std::optional<tap_reading> other_tap() const;
     bool coarse() const { return axis.encoder.resolution_m > 0 && count > 1.5 * axis.encoder.resolution_m; }
     /// Whether the steps of the reading are those of the last digit that is written: they say nothing of the
     /// encoder.

@@ -60,20 +60,6 @@ QUADRANT_DIAGNOSIS_DECL axis_record axis_case::record_of(double period, const ex
     return out;
 }
 
-QUADRANT_DIAGNOSIS_DECL std::optional<tap_reading> axis_case::other_tap() const {
-    const plant_model& plant = best().fit.plant;
-    if (!record.taps_force(plant.drive) || record.tap || best().effects.empty()) return {};
-    const fitter fit(record.observer, record.score);
-    const tap_reading way =
-        detail::best_tap(fit, *record.observer.drive, plant, resumed(best().fit), record.bandwidth_Hz);
-    if (way != plant.drive.read.tap) return way;
-    // What acts late, or little, on the command is what a mean over the row looks like beside a moment of it.
-    const bool of_command = std::any_of(best().effects.begin(), best().effects.end(),
-                                        [](const effect* e) { return e->joins == joint::command; });
-    if (!of_command || way == tap_reading::row_mean) return {};
-    return tap_reading::row_mean;
-}
-
 QUADRANT_DIAGNOSIS_DECL void axis_case::follow(std::vector<candidate> way) {
     path = std::move(way);
     claims = path.size() - 1;

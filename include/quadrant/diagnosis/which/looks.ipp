@@ -33,10 +33,9 @@ inline void need_blocks(const axis_case& c, const std::string& file) {
                                c.log.position.size() - out, c.axis.name.c_str(), in_pieces.c_str(), scored));
     // The blocks lie at fixed rows: a piece of any beginning holds a whole one where it is a block longer.
     const std::size_t needed = c.record.score.skip + (pieces < 2 ? 1 : 2) * blocks.block;
-    throw bad_input(file,
-                    worded("%zu samples of axis %s%s: a diagnosis needs %zu in a row, some to start the "
-                           "observer and a block to score",
-                           c.log.position.size() - out, c.axis.name.c_str(), in_pieces.c_str(), needed));
+    throw bad_input(file, worded("%zu samples of axis %s%s: a diagnosis needs %zu in a row, some to start the "
+                                 "observer and a block to score",
+                                 c.log.position.size() - out, c.axis.name.c_str(), in_pieces.c_str(), needed));
 }
 
 /// Whether an axis is looked at again with models led along its motion: structure is left, and what was found
@@ -111,6 +110,23 @@ inline bool hides_what_the_other_shows(const axis_case& c) {
     return c.settled || c.second_log(c.best()).force > 2 * c.models.held_out_force(c.best());
 }
 
+/// How the tap is read by what fits beside the causes that were found; none: nothing is tapped, or that is the
+/// way that was taken. Where a cause bends the calibration, the choice beside the described machine may be
+/// wrong; and what acts late, or little, on the command is what a mean over the row looks like beside a moment.
+inline std::optional<tap_reading> other_tap(const axis_case& c) {
+    const auto& effects = c.best().effects;
+    const plant_model& plant = c.best().fit.plant;
+    if (!c.record.taps_force(plant.drive) || c.record.tap || effects.empty()) return {};
+    const fitter fit(c.record.observer, c.record.score);
+    const tap_reading way =
+        best_tap(fit, *c.record.observer.drive, plant, resumed(c.best().fit), c.record.bandwidth_Hz);
+    if (way != plant.drive.read.tap) return way;
+    const bool of_command =
+        std::any_of(effects.begin(), effects.end(), [](const effect* e) { return e->joins == joint::command; });
+    if (!of_command || way == tap_reading::row_mean) return {};
+    return tap_reading::row_mean;
+}
+
 inline const char* in_words(tap_reading way) {
     switch (way) {
     case tap_reading::before_set_point:
@@ -165,7 +181,7 @@ look_at(const looked_at& of, const std::string& file, const progress& tell, std:
             fmt::format("axis {}: log and hold-out log are fitted together: a soft servo that its friction "
                         "holds says too little in one of them.",
                         of.axis.name));
-    if (const auto tap = of.both ? std::nullopt : found->other_tap()) {
+    if (const auto tap = of.both ? std::nullopt : other_tap(*found)) {
         tell("axis " + of.axis.name + ": again, with what was measured in the drive read in another way");
         take_other_tap(found, look(held_by::readings, nullptr, false, tap), of.limits.margin, notes);
     }

@@ -74,8 +74,8 @@ protected:
     void says(const std::string& line) const;
     /// What is added in each of these.
     static std::string names_of(std::span<const std::size_t> some, const std::vector<candidate>& models);
-    /// Of the sketches behind the first `fitted` those fitted to the end that come near the best already, and of
-    /// a path those of a number at whose tolerance calibration stops.
+    /// Of the sketches behind the first `fitted` those fitted to the end that come near the best already, and
+    /// of a path those of a number at whose tolerance calibration stops.
     void finish_near(const std::vector<std::size_t>& which, std::size_t fitted, const candidate& from,
                      std::vector<candidate>& models) const;
     /// A model that scores worse than one of its parts stopped short: it is fitted again with what that part
