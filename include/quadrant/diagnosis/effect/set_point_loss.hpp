@@ -5,9 +5,9 @@
 
 namespace quadrant::inline v0::diagnosis::suspect {
 
-/// Some set-points never arrive, and the drive repeats the one before. Joins the drive. Shows as pulses as large
-/// as what the set-points changed by; which ones they were is found like lost commands (model/sample_loss.hpp),
-/// in what was measured behind the drive where something was, else in the path.
+/// Some set-points never arrive, and the drive repeats the one before. Joins the drive. Shows as pulses as
+/// large as what the set-points changed by; which ones they were is found like lost commands
+/// (model/sample_loss.hpp), in what was measured behind the drive where something was, else in the path.
 inline constexpr effect set_point_loss{
     .name = "set_point_loss",
     .label = "lost set-points",

@@ -21,14 +21,13 @@ inline bool may_be_absent(const candidate& best, const effect& e, const scoring&
 
 /// Whether something else does as much as this cause. `of_laws`: the calibrated machine leaves no more than
 /// laws of friction are wrong by.
-inline bool is_no_claim(const axis_case& c, const effect& e, const cause& named, const plant_model& as_given,
-                        bool of_laws) {
+inline bool is_no_claim(const axis_case& c, const effect& e, const cause& named, bool of_laws) {
     // An error of a law of friction is a force on the axis: it has no part in the command or the reading.
     const bool on_axis = e.joins != joint::command && e.joins != joint::reading;
     return (on_axis && answers_between_rows(c.axis, c.log, c.record.period)) ||
            (of_laws && on_axis && may_be_friction(c, e)) || c.is_error_of_its_law(e) ||
            may_be_inside_its_tolerance(c, named.parameters) || drowns_in_the_rest(c, e) ||
-           is_as_described(named, e, as_given) || lies_beyond(named, c.best()) || late_velocity(c, named) > 0 ||
+           lies_beyond(named, c.best()) || late_velocity(c, named) > 0 ||
            repeats_with_the_motion(c.record, named) ||
            std::any_of(e.ends_inside.begin(), e.ends_inside.end(),
                        [&](std::string_view key) { return !key.empty() && c.best().ends_at_a_bound(key); });
@@ -83,7 +82,11 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
                     detail::widen(named.parameters, estimates(r.model, e, c.record.score));
         const bool undetermined = detail::is_undetermined(named.parameters); // by its own scatter
         const bool absent = !named.described && detail::may_be_absent(c.best(), e, c.record.score);
-        detail::add_model_error(named.parameters, e, c, detail::left_beside(c, i));
+        // What is left beside a cause may have moved its values, unless the cause explains more.
+        bool as_described = detail::is_as_described(named, e, as_given);
+        const double left = detail::left_beside(c, i);
+        detail::add_model_error(named.parameters, e, c, left);
+        if (e.by_another_law > 1 || !(left < 1)) as_described = detail::is_as_described(named, e, as_given);
         // A suspect that is worth its place on held-out motion was there in one of eleven, however little spoke
         // for it (docs/trial.md).
         constexpr double least = 0.08;
@@ -93,7 +96,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
             (1 - detail::unknown(c, i)) * detail::against_others(c, rivals[i]) * (1 - excluded.probability);
         named.probability = std::max(least, named.probability * known);
         named.group_probability = std::max(named.probability, named.group_probability * known);
-        if (undetermined || absent || detail::is_no_claim(c, e, named, as_given, of_laws))
+        if (undetermined || absent || as_described || detail::is_no_claim(c, e, named, of_laws))
             detail::to_suspects({&named, 1});
         out.push_back(std::move(named));
     }

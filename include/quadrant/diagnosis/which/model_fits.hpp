@@ -28,8 +28,8 @@ protected:
     /// How many models a round fits to the end, at most, of those that a first look found.
     std::size_t most_fitted() const { return rules_.finalists * effort(); }
     /// A model with the numbers of the machine file as they are described. Where calibration stops at the end
-    /// of a tolerance, it bent to what a missing effect does, and a fit that begins there may stay there: of a
-    /// path that of the number itself.
+    /// of a tolerance, it bent to what a missing effect does, and a fit that begins there may stay there:
+    /// beside a drive's loops that of the number itself.
     static candidate as_described(candidate c);
     static candidate joined(const candidate& from, const effect* added);
     /// The calibrated machine and this effect alone, where that was tried and pays; else null.
@@ -75,7 +75,7 @@ protected:
     /// What is added in each of these.
     static std::string names_of(std::span<const std::size_t> some, const std::vector<candidate>& models);
     /// Of the sketches behind the first `fitted` those fitted to the end that come near the best already, and
-    /// of a path those of a number at whose tolerance calibration stops.
+    /// beside a drive's loops those of a number at whose tolerance calibration stops.
     void finish_near(const std::vector<std::size_t>& which, std::size_t fitted, const candidate& from,
                      std::vector<candidate>& models) const;
     /// A model that scores worse than one of its parts stopped short: it is fitted again with what that part

@@ -64,7 +64,7 @@ QUADRANT_DIAGNOSIS_DECL void model_fits::sketch_each(const candidate& from,
     const bool bent = record_.replayed() && from.stops_at_a_tolerance();
     const auto begins_as_described = [&](std::size_t i) {
         const effect& e = *models[i].effects.back();
-        return bent || e.bends_calibration || (record_.closed() && is_beyond_tolerance(from, e));
+        return bent || e.bends_calibration || (axis_.drive.closes() && is_beyond_tolerance(from, e));
     };
     std::vector<candidate> origins{from};
     if (std::any_of(which.begin(), which.end(), begins_as_described)) origins.push_back(as_described(from));
@@ -142,7 +142,7 @@ QUADRANT_DIAGNOSIS_DECL void model_fits::finish_near(const std::vector<std::size
     std::vector<std::size_t> near;
     for (std::size_t j = std::min(fitted, which.size()); j < which.size(); ++j)
         if (models[which[j]].total - from.total > rules_.near_best * most ||
-            (record_.closed() && is_beyond_tolerance(from, *models[which[j]].effects.back())))
+            (axis_.drive.closes() && is_beyond_tolerance(from, *models[which[j]].effects.back())))
             near.push_back(which[j]);
     const auto fit = [&](std::span<const std::size_t> some) {
         if (over()) return;
