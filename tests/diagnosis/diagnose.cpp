@@ -307,7 +307,7 @@ TEST_CASE("diagnose: a short record is refused only where not one block of it ca
     }
     CHECK(said.starts_with("short.csv: " + std::to_string(log.samples) +
                            " samples of axis x: a diagnosis needs "));
-    CHECK(said.ends_with(", one block to start the observer and one to score"));
+    CHECK(said.ends_with(" in a row, some to start the observer and a block to score"));
     for (const double seconds : {0.11, 0.2, 0.5, 1.0}) {
         CAPTURE(seconds);
         const auto d = diagnose(described(real), as_log(run(real, seconds)));

@@ -53,14 +53,14 @@ inline constexpr effect stribeck_friction{
               .slow_shows_it = true},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double peak = s.record.scale.speed, give = s.leader.friction.contact.length;
-        // Slower than that a described contact still gives way, by another law than this one.
+        // Slower than that the contact still gives way, by another law than this one.
         const double creep = give > s.record.scale.give() ? give / s.record.scale.response() : 0;
         const double slowest = std::max(8e-4 * peak, creep), fastest = 0.4 * peak;
-        if (!(slowest < fastest / 2)) return {};
         std::vector<std::vector<parameter>> out;
-        std::vector<double> velocities{0.004 * peak, 0.02 * peak, 0.08 * peak};
-        for (double& v : velocities) v = std::max(v, 1.25 * slowest);
-        velocities.erase(std::unique(velocities.begin(), velocities.end()), velocities.end());
+        std::vector<double> velocities;
+        for (double share : {0.004, 0.02, 0.08})
+            if (share * peak > 1.25 * slowest) velocities.push_back(share * peak);
+        if (velocities.empty() && slowest < fastest / 2) velocities.push_back(1.25 * slowest);
         // A described curve that is only too low or too high keeps its speed.
         if (s.leader.friction.excess > 0) velocities.push_back(s.leader.friction.stribeck_velocity);
         for (double velocity : velocities) {
@@ -86,8 +86,8 @@ inline constexpr effect stribeck_friction{
                            {.key = "stribeck_velocity_m_per_s",
                             .of = [](plant_model& p) -> double& { return p.friction.stribeck_velocity; },
                             .start = velocity,
-                            .low = std::min(slowest, velocity),
-                            .high = fastest,
+                            .low = std::min(slowest, 0.8 * velocity),
+                            .high = std::max(fastest, 1.25 * velocity),
                             .logarithmic = true,
                             .step = 1e-3},
                            {.key = "stribeck_exponent",

@@ -108,8 +108,11 @@ inline constexpr effect structural_resonance{
         // model lacks; so does one far below the corner unless it rings for long, and one of a few cycles.
         const double record = static_cast<double>(s.record.position.size()) * s.record.period;
         const double lowest = std::max(0.01 * corner, 5 / record);
+        const double slow = std::max(lowest, 0.25 * corner);
+        std::vector<double> frequencies = detail::ringing_frequencies(s, slow, highest, 3);
+        for (double f : detail::ringing_frequencies(s, lowest, slow, 1)) frequencies.push_back(f);
         std::vector<std::vector<parameter>> out;
-        for (double f : detail::ringing_frequencies(s, lowest, highest, 3))
+        for (double f : frequencies)
             for (double share : {0.03, 0.2, 0.33, 0.5}) // the axis rings above the frequency of the mode alone
                 out.push_back({{.key = "mode_mass_kg",
                                 .of = [](plant_model& p) -> double& { return p.mode.mass; },
@@ -121,7 +124,7 @@ inline constexpr effect structural_resonance{
                                {.key = "mode_frequency_Hz",
                                 .of = [](plant_model& p) -> double& { return p.mode.frequency_Hz; },
                                 .start = f * std::sqrt(1 - share),
-                                .low = 0.8 * lowest,
+                                .low = 0.8 * (f < slow ? lowest : slow),
                                 .high = highest,
                                 .logarithmic = true,
                                 .step = 1e-3},
@@ -129,7 +132,7 @@ inline constexpr effect structural_resonance{
                                 .of = [](plant_model& p) -> double& { return p.mode.damping; },
                                 .start = 0.05,
                                 .low = 0.002,
-                                .high = f < 0.25 * corner ? 0.1 : 0.33,
+                                .high = f < slow ? 0.1 : 0.33,
                                 .logarithmic = true,
                                 .step = 1e-2}});
         return out;

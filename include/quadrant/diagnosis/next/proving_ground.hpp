@@ -117,6 +117,7 @@ private:
         const std::size_t n = m.reference.size();
         const double start = m.reference[0];
         plant.drive.start_force = plant.holding_force(start); // it stands there
+        plant.drive.received.reset();                         // other set-points are lost, on average as many
         const bool asks = axis_.drive.kind == drive_kind::velocity;
         axis_log log;
         log.name = axis_.name;
@@ -165,7 +166,9 @@ private:
 
     static candidate refitted(const axis_record& r, const candidate& model, int steps) {
         candidate c{.effects = model.effects};
-        c.fit = fitter(r.observer, r.score).fit(model.fit.plant, resumed(model.fit), steps);
+        plant_model start = model.fit.plant;
+        if (start.drive.losses_known()) start.drive.received = r.observer.received(start);
+        c.fit = fitter(r.observer, r.score).fit(start, resumed(model.fit), steps);
         c.total = -std::numeric_limits<double>::infinity();
         judge(r, c);
         return c;

@@ -119,9 +119,8 @@ QUADRANT_DIAGNOSIS_DECL std::unique_ptr<running_controller> begun(const running_
 /// that leaves open of the initial integral is a constant offset of the replay, which further passes take from
 /// the record up to where the command reaches its limit, which the integral does not outlive: one pass, and up
 /// to three more where two rows of a coarse encoder say a velocity that takes the integral to its limit. A law
-/// that
-/// follows from what it applied is told so by the log. Rows that a controller is only shown, and those whose
-/// look-ahead ends behind the log, are the logged ones.
+/// that follows from what it applied is told so by the log. Rows that a controller is only shown, and those
+/// whose look-ahead ends behind the log, are the logged ones.
 QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_stretch(const controller_description& c,
                                                            const actuator_description& a, double period,
                                                            const loop_columns& log);

@@ -62,8 +62,9 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_stretch(const controller_desc
     const std::size_t forgotten = pass(0);
     if (!fresh->remembers()) return out;
     const std::vector<double> as_begun = out;
-    const auto with_offset_of = [&](std::size_t rows) { // the replay, and the square of what it leaves
+    const auto with_offset_of = [&](std::size_t rows) { // the best replay, and the square of what it leaves
         constexpr int rounds = 4;                       // one does, unless the limit cut the first integral off
+        std::pair best(as_begun, std::numeric_limits<double>::infinity());
         out = as_begun;
         double offset = 0;
         for (int round = 0; round < rounds; ++round) {
@@ -72,10 +73,11 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_stretch(const controller_desc
             const double missing = quantile(std::move(more), 0.5);
             if (round > 0 && std::abs(missing) <= 1e-3 * std::abs(offset)) break;
             pass(offset += missing);
+            double sum = 0;
+            for (std::size_t k = 0; k < out.size(); ++k) sum += square(log.command[k] - out[k]);
+            if (sum < best.second) best = {out, sum};
         }
-        double sum = 0;
-        for (std::size_t k = 0; k < out.size(); ++k) sum += square(log.command[k] - out[k]);
-        return std::pair(out, sum);
+        return best;
     };
     auto by_all = with_offset_of(out.size());
     if (forgotten == 0 || forgotten == out.size()) return std::move(by_all.first);

@@ -31,8 +31,8 @@ inline void need_blocks(const axis_case& c, const std::string& file) {
                         worded("%zu samples of axis %s%s: only %zu of them lie in pieces that are long "
                                "enough to be judged",
                                c.log.position.size() - out, c.axis.name.c_str(), in_pieces.c_str(), scored));
-    // The blocks lie at fixed rows: a piece of any beginning holds a whole one where it is a block longer.
-    const std::size_t needed = c.record.score.skip + (pieces < 2 ? 1 : 2) * blocks.block;
+    // Behind a gap the observer starts anew.
+    const std::size_t needed = (pieces < 2 ? c.record.score.skip : c.record.score.block) + blocks.block;
     throw bad_input(file, worded("%zu samples of axis %s%s: a diagnosis needs %zu in a row, some to start the "
                                  "observer and a block to score",
                                  c.log.position.size() - out, c.axis.name.c_str(), in_pieces.c_str(), needed));
@@ -112,7 +112,7 @@ inline bool hides_what_the_other_shows(const axis_case& c) {
 
 /// How the tap is read by what fits beside the causes that were found; none: nothing is tapped, or that is the
 /// way that was taken. Where a cause bends the calibration, the choice beside the described machine may be
-/// wrong; and what acts late, or little, on the command is what a mean over the row looks like beside a moment.
+/// wrong; and a lag or a delay of the actuator is what a mean over the row looks like beside a moment of it.
 inline std::optional<tap_reading> other_tap(const axis_case& c) {
     const auto& effects = c.best().effects;
     const plant_model& plant = c.best().fit.plant;
@@ -121,9 +121,9 @@ inline std::optional<tap_reading> other_tap(const axis_case& c) {
     const tap_reading way =
         best_tap(fit, *c.record.observer.drive, plant, resumed(c.best().fit), c.record.bandwidth_Hz);
     if (way != plant.drive.read.tap) return way;
-    const bool of_command =
-        std::any_of(effects.begin(), effects.end(), [](const effect* e) { return e->joins == joint::command; });
-    if (!of_command || way == tap_reading::row_mean) return {};
+    const bool late =
+        std::any_of(effects.begin(), effects.end(), [](const effect* e) { return e->box == "actuator"; });
+    if (!late || way == tap_reading::row_mean) return {};
     return tap_reading::row_mean;
 }
 
@@ -146,8 +146,8 @@ inline void take_other_tap(std::unique_ptr<axis_case>& found, std::unique_ptr<ax
     const bool fewer = other->best().effects.size() < found->best().effects.size();
     if (!(other->best().total > found->best().total + (fewer ? 0 : margin))) return;
     found = std::move(other);
-    notes.push_back(fmt::format("axis {}: what was measured in the drive is taken as {}: beside what was "
-                                "found that fits better than what fits the described machine.",
+    notes.push_back(fmt::format("axis {}: what was measured in the drive is taken as {}: that fits better "
+                                "beside what was found, or as well without a cause.",
                                 found->axis.name, in_words(found->best().fit.plant.drive.read.tap)));
 }
 
