@@ -46,7 +46,7 @@ refuses 'x_cmd_V' machine.json l.csv
 head -n 2 log.csv >l.csv
 refuses 'holds one sample only' machine.json l.csv
 sed -n '1p;2000,2039p' log.csv >l.csv
-refuses 'one block to start the observer and one to score' machine.json l.csv
+refuses 'some to start the observer and a block to score' machine.json l.csv
 awk -F, 'NR == 1 { print; next } { print $1 ",0,0,0" }' log.csv >l.csv
 refuses 'axis x does not move' machine.json l.csv
 "$program" diagnose --machine machine.json --log log.csv --json no/such/folder.json >said.txt 2>&1 && exit 1
