@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 // When the set-points of a position drive arrive, and whether they do (drive_simulator.hpp).
+#include "claims.hpp"
 #include "drive_simulator.hpp"
 #include "shared.hpp"
 
@@ -60,17 +61,6 @@ diagnosis_result diagnosed(const machine_description& machine, const drive_simul
     return diagnose(
         machine, log, &holdout, [](const std::string&) {}, one);
 }
-/// The only cause, claimed; null: not so.
-const cause* only_claim(const diagnosis_result& d, const char* effect) {
-    const bool so = d.causes.size() == 1 && d.causes[0].effect == effect && d.causes[0].probability >= 0.5;
-    return so ? &d.causes[0] : nullptr;
-}
-double value_of(const cause& c, const std::string& key) {
-    for (const auto& p : c.parameters)
-        if (p.key == key) return p.values[0].value;
-    return std::nan("");
-}
-
 } // namespace
 
 TEST_CASE("set-point loss: the set-points that a drive lost are found, in its current and in its path") {
@@ -87,10 +77,12 @@ TEST_CASE("set-point loss: the set-points that a drive lost are found, in its cu
         m.rows_of_a_set_point = 4;
     }
     const auto d = diagnosed(described(m), m);
-    const cause* loss = only_claim(d, "set_point_loss");
-    REQUIRE(loss);
-    CHECK(value_of(*loss, "drive.set_point_loss") == doctest::Approx(0.06).epsilon(0.2));
-    CHECK(loss->gap_after_force_rms_N.value < 0.4 * loss->gap_before_force_rms_N.value);
+    CAPTURE(workshop::said(d));
+    REQUIRE(workshop::claims(d) == std::vector<std::string>{"set_point_loss"});
+    REQUIRE(d.causes.size() == 1);
+    const cause& loss = d.causes[0];
+    CHECK(workshop::value_of(loss, "drive.set_point_loss").value == doctest::Approx(0.06).epsilon(0.2));
+    CHECK(loss.gap_after_force_rms_N.value < 0.4 * loss.gap_before_force_rms_N.value);
 }
 
 TEST_CASE("set-point loss: which ones were lost") {
@@ -157,6 +149,7 @@ TEST_CASE("command delay: beyond its tolerance it is fitted to the end, and no f
     const auto d = diagnosed(described(off), m);
     REQUIRE(!d.causes.empty());
     CHECK(d.causes[0].effect == "command_delay");
-    CHECK(value_of(d.causes[0], "drive.command_delay_s") == doctest::Approx(6e-3).epsilon(0.02));
+    CHECK(workshop::value_of(d.causes[0], "drive.command_delay_s").value ==
+          doctest::Approx(6e-3).epsilon(0.02));
     CHECK(d.causes.size() == 1);
 }

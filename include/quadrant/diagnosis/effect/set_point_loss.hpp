@@ -30,7 +30,6 @@ inline constexpr effect set_point_loss{
             return {};
         plant_model plant = s.leader;
         plant.drive.loss = 0;
-        plant.drive.received.reset();
         std::vector<double> without;
         if (s.leader.drive.loss > 0) s.record.observer.run(plant, without);
         const auto& innovation = s.leader.drive.loss > 0 ? without : s.innovation;

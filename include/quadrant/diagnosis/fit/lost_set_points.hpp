@@ -9,19 +9,17 @@
 
 namespace quadrant::inline v0::diagnosis::detail {
 
-/// The rows from which a drive takes its set-points, one after another, on its own clock.
+/// The rows whose set-points a drive takes, one after another.
 inline std::vector<std::size_t> arrivals(const drive_model& d, std::size_t rows, double period,
                                          std::span<const log_start> others) {
-    const double every = (d.set_point_period > 0 ? d.set_point_period / period : 1) * (1 + d.clock_slip);
+    const set_point_arrivals clock(d, period);
     std::vector<std::size_t> out;
     std::size_t first = 0;
     for (std::size_t log = 0; log <= others.size(); ++log) {
         const std::size_t end = log < others.size() ? others[log].row : rows;
-        for (double n = 0;; ++n) {
-            const auto row = first + static_cast<std::size_t>(std::floor(n * every + 1e-6));
-            if (row >= end) break;
-            if (out.empty() || row > out.back()) out.push_back(row);
-        }
+        for (long n = 0; first + clock.row(n) < end; ++n)
+            if (const std::size_t row = first + clock.row(n); out.empty() || row > out.back())
+                out.push_back(row);
         first = end;
     }
     return out;

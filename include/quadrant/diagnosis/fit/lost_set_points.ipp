@@ -62,7 +62,6 @@ QUADRANT_DIAGNOSIS_DECL std::shared_ptr<const received_set_points>
 predictor::received(const plant_model& plant) const {
     plant_model whole = plant;
     whole.drive.loss = 0;
-    whole.drive.received.reset();
     std::vector<double> innovation;
     pass(std::span(&whole, 1), command, std::span(&innovation, 1), nullptr);
     auto found = set_points_with_loss(whole, innovation, {.probability = plant.drive.loss, .learned = true});

@@ -21,6 +21,19 @@ struct log_start {
     double velocity;
 };
 
+/// When a drive takes the set-points of a record, on its own clock.
+struct set_point_arrivals {
+    double every; ///< [rows]
+
+    set_point_arrivals(const drive_model& d, double period)
+        : every((d.set_point_period > 0 ? d.set_point_period / period : 1) *
+                (1 + std::clamp(d.clock_slip, -0.5, 0.5))) {}
+    /// The newest row as the n-th one arrives: one comes twice, or never, where the two clocks differ.
+    std::size_t row(long n) const {
+        return static_cast<std::size_t>(std::max(0.0, std::floor(static_cast<double>(n) * every + 1e-6)));
+    }
+};
+
 /// The set-points of a record on the drive's clock: what its loops follow during each part of a row.
 class set_point_clock {
 public:
@@ -29,9 +42,7 @@ public:
                     std::span<const log_start> others)
         : values_(values), others_(others), line_(d.between),
           loss_(d.losses_known() ? 0 : std::clamp(d.loss, 0.0, 1.0)), delay_((d.delay + d.read.age) / period),
-          every_((d.set_point_period > 0 ? d.set_point_period / period : 1) *
-                 (1 + std::clamp(d.clock_slip, -0.5, 0.5))),
-          state_(line_state::at(values[0])) {}
+          arrivals_(d, period), state_(line_state::at(values[0])) {}
 
     /// Mean of the set-point and of its velocity [a row] from `begin` to `end`, in rows; call with rising
     /// times.
@@ -40,7 +51,8 @@ public:
     };
     stretch between(double begin, double end) {
         if (!others_.empty() && begin >= static_cast<double>(others_.front().row)) begin_anew();
-        const double a = (begin - first_ - delay_) / every_, b = (end - first_ - delay_) / every_;
+        const double a = (begin - first_ - delay_) / arrivals_.every,
+                     b = (end - first_ - delay_) / arrivals_.every;
         stretch out{0, 0};
         for (double from = a; from < b;) { // pieces without an arrival
             const double to = std::min(b, static_cast<double>(next_));
@@ -53,7 +65,7 @@ public:
             if (from < b) arrive();
         }
         const double mean = 1 / (b - a);
-        return {out.value * mean, out.velocity * (mean / every_)};
+        return {out.value * mean, out.velocity * (mean / arrivals_.every)};
     }
 
 private:
@@ -68,10 +80,7 @@ private:
         next_ = 0;
     }
     void arrive() {
-        // The newest row: one comes twice, or never, where the two clocks differ.
-        const auto row =
-            static_cast<std::size_t>(std::max(0.0, std::floor(static_cast<double>(next_) * every_ + 1e-6)));
-        const double x = values_[std::min(row, values_.size() - 1)];
+        const double x = values_[std::min(arrivals_.row(next_), values_.size() - 1)];
         // A lost set-point repeats the one before; on average a share of them does.
         line_.arrive(state_, x + loss_ * (state_.last[0] - x));
         ++next_;
@@ -80,7 +89,8 @@ private:
     std::span<const double> values_; ///< of the log that runs, and of those behind it
     std::span<const log_start> others_;
     set_point_line<> line_;
-    double loss_, delay_, every_;
+    double loss_, delay_;
+    set_point_arrivals arrivals_;
     double first_ = 0; ///< row of the log that runs
     line_state state_;
     long next_ = 0; ///< the set-point that arrives next
@@ -109,8 +119,14 @@ public:
     std::shared_ptr<const followed_set_points> of(const drive_model& d, std::size_t steps,
                                                   std::span<const double> set_point, double period,
                                                   std::span<const log_start> others) const {
-        const timing asked{d.between, d.set_point_period, d.delay + d.read.age, d.loss, d.clock_slip,
-                           steps,     d.received};
+        const bool known = d.losses_known();
+        const timing asked{.between = d.between,
+                           .set_point_period = d.set_point_period,
+                           .delay = d.delay + d.read.age,
+                           .loss = known ? 0 : d.loss,
+                           .clock_slip = d.clock_slip,
+                           .steps = steps,
+                           .received = known ? d.received : nullptr};
         {
             const std::lock_guard lock(mutex_);
             for (const auto& [of, points] : kept_)

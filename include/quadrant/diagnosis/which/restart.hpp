@@ -12,6 +12,8 @@ namespace quadrant::inline v0::diagnosis {
 /// not happen here.
 inline plant_model restarted(plant_model plant, const axis_record& record) {
     plant.drive.off_from = plant.drive.off_until = 0;
+    // First: the fits below need them, and where the integral stands makes no pulse.
+    if (plant.drive.losses_known()) plant.drive.received = record.observer.received(plant);
     if (plant.drive.has_integral()) {
         const fitter fit(record.observer, record.score);
         // What a drive at rest holds; or what it held in the first log, of a force that no model has.
@@ -29,7 +31,6 @@ inline plant_model restarted(plant_model plant, const axis_record& record) {
                     .fit(plant, timing_of_readings(plant.drive, record.period), 4)
                     .plant;
     }
-    if (plant.drive.losses_known()) plant.drive.received = record.observer.received(plant);
     if (plant.cutting.count == 0) return plant;
     const fitter fit(record.observer, record.score);
     double& (*const start)(plant_model&) = [](plant_model& p) -> double& { return p.cutting_start; };
