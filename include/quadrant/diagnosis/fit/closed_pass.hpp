@@ -12,14 +12,15 @@ struct closed_input {
         plant_axis::parameters axis{};
         loop_numbers<double> loops{};
         const double *set_point = nullptr, *its_velocity = nullptr;
+        double scale = 1; ///< of the set-points: a velocity drive's of a volt
     };
     double period = 0;
     std::size_t rows = 0, steps = 1; ///< steps of a row
     const double* position = nullptr;
-    double velocity = 0;                            ///< at the first row [m/s]
-    std::span<const log_start> begins{}; ///< where another log begins
-    const double* other_acceleration = nullptr;     ///< null: none
-    const unsigned char* off = nullptr;             ///< rows in which the drive gives nothing; null: none
+    double velocity = 0;                        ///< at the first row [m/s]
+    std::span<const log_start> begins{};        ///< where another log begins
+    const double* other_acceleration = nullptr; ///< null: none
+    const unsigned char* off = nullptr;         ///< rows in which the drive gives nothing; null: none
     std::size_t plants = 0;
     const plant* plant_of = nullptr;
     double* const* innovation = nullptr; ///< one array a plant
@@ -75,13 +76,15 @@ public:
         alike_ = std::all_of(in.plant_of, in.plant_of + in.plants, [&](const closed_input::plant& p) {
             return p.set_point == first.set_point && p.its_velocity == first.its_velocity;
         });
+        scale_ = gathered([](const closed_input::plant& p) { return p.scale; });
     }
 
     /// A log begins: the axes stand at the reading of row k, and move with this velocity.
     void begin(std::size_t k, double velocity) {
         first_ = k;
         plant_.begin(Real(in_.position[k]), Real(velocity),
-                     gathered([&](const closed_input::plant& p) { return p.set_point[k * in_.steps]; }));
+                     scale_ *
+                         gathered([&](const closed_input::plant& p) { return p.set_point[k * in_.steps]; }));
     }
     /// What is between the path and the reading of row k, where the row begins.
     void compare(std::size_t k) {
@@ -95,9 +98,9 @@ public:
     void step(std::size_t k, std::size_t j) {
         const closed_input::plant& first = in_.plant_of[0];
         if (alike_)
-            plant_(Real(first.set_point[j]), Real(first.its_velocity[j]), in_.off && in_.off[k], now_);
+            plant_(scale_ * Real(first.set_point[j]), Real(first.its_velocity[j]), in_.off && in_.off[k], now_);
         else
-            plant_(gathered([j](const closed_input::plant& p) { return p.set_point[j]; }),
+            plant_(scale_ * gathered([j](const closed_input::plant& p) { return p.set_point[j]; }),
                    gathered([j](const closed_input::plant& p) { return p.its_velocity[j]; }),
                    in_.off && in_.off[k], now_);
         now_.time = now_.time + Real(h_);
@@ -116,6 +119,7 @@ private:
     std::size_t first_ = 0; ///< row of the log that runs
     closed_axis<Real, axis> plant_;
     bool alike_ = false;
+    Real scale_{1};
     typename axis::surroundings now_{};
 };
 

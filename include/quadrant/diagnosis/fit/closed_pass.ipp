@@ -44,20 +44,13 @@ QUADRANT_DIAGNOSIS_DECL void predictor::pass_closed(std::span<const plant_model>
     for (const plant_model& p : plants)
         steps = std::max(steps, static_cast<std::size_t>(steps_of_drive(p, period)));
     std::array<std::shared_ptr<const followed_set_points>, abreast> follows;
-    std::array<std::vector<double>, abreast> scaled; // of velocity drives in volts
     std::array<closed_input::plant, abreast> each;
     std::array<double*, abreast> e{};
     for (std::size_t i = 0; i < plants.size(); ++i) {
         const drive_model& d = plants[i].drive;
         follows[i] = drive->follows(d, steps);
-        const double* set_point = follows[i]->value.data();
-        if (drive->in_volts) {
-            scaled[i] = follows[i]->value;
-            for (double& r : scaled[i]) r *= d.velocity_per_V;
-            set_point = scaled[i].data();
-        }
-        each[i] = {axis_parameters(plants[i]), loops_of(d, drive->constant), set_point,
-                   follows[i]->velocity.data()};
+        each[i] = {axis_parameters(plants[i]), loops_of(d, drive->constant), follows[i]->value.data(),
+                   follows[i]->velocity.data(), drive->in_volts ? d.velocity_per_V : 1};
         e[i] = innovation[i].data();
     }
     passes().closed({.period = period,

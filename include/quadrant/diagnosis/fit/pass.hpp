@@ -23,7 +23,7 @@ struct pass_input {
     const double* const* command_of = nullptr;  ///< one command a plant instead of one for all; null: none
     const double* other_acceleration = nullptr; ///< null: none
     double to_position = 0, to_velocity = 0;    ///< gains of the correction by the innovation
-    bool leads = false;                         ///< the correction is a motion that the axis is led along
+    bool leads = false;                         ///< instead of it the axis is led along the positions
     std::size_t plants = 0;
     const plant* plant_of = nullptr;
     double* const* innovation = nullptr;   ///< one array a plant
@@ -64,11 +64,10 @@ public:
         if (in.other_acceleration) now_.other_acceleration = Real(in.other_acceleration[k]);
         const Real e = Real(in.position[k]) - newer_.reading(state_);
         keep(in, in.innovation, k, e);
-        const Real dx = Real(in.to_position) * e, dv = Real(in.to_velocity) * e;
         if (in.leads)
-            state_.lead(dx, dv);
+            state_.lead(e, velocity_ahead(in, k) - newer_.seen_velocity(state_));
         else
-            state_.shift(dx, dv);
+            state_.shift(Real(in.to_position) * e, Real(in.to_velocity) * e);
         begun_at_ = newer_.seen(state_);
         begun_with_ = newer_.seen_velocity(state_);
     }
@@ -127,6 +126,12 @@ private:
           newer_(boxes, (Real(in.period) - d.late) * part(in), already_checked()),
           state_(axis::state::at(newer_.position_of(Real(in.position[0])))) {}
 
+    /// Of the motion that is led along, in the period that begins at row k: with that of the one before, each
+    /// friction would act a row late.
+    static Real velocity_ahead(const pass_input& in, std::size_t k) {
+        const std::size_t from = k + 1 < in.rows ? k : in.rows - 2;
+        return Real((in.position[from + 1] - in.position[from]) / in.period);
+    }
     static Real part(const pass_input& in) { return Real(1 / static_cast<double>(in.substeps)); }
     /// Through a part of the period of this length.
     void advance(const axis& a, typename axis::state& s, const Real& u, const Real& length, std::size_t steps) {
