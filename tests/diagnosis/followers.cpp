@@ -191,8 +191,9 @@ TEST_CASE("positions: a drift has no name, and what is left beside the causes ho
                                          "machine.json"),
                             read_log(log, "log.csv"));
     CAPTURE(said(d));
-    CHECK(std::any_of(d.notes.begin(), d.notes.end(),
-                      [](const std::string& note) { return note.find("drifts by") != note.npos; }));
+    CHECK(std::any_of(d.notes.begin(), d.notes.end(), [](const std::string& note) {
+        return note.find("drifts by") != note.npos && note.find("urad over") != note.npos;
+    }));
     CHECK(d.axes[0].gap_after.position_rms_m == doctest::Approx(drift / std::sqrt(12.0)).epsilon(0.15));
 }
 

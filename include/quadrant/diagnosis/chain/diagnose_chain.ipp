@@ -6,7 +6,9 @@ namespace quadrant::inline v0::diagnosis::chain {
 QUADRANT_DIAGNOSIS_DECL void join(axis_result& result, std::vector<cause>& causes, diagnosis_result& out,
                                   outcome&& o, const char* view) {
     result.verdict = std::max(result.verdict, o.verdict);
+    const auto in_words = [&](std::string& text) { text = text_of(text, result.kind); };
     for (place& p : o.places) {
+        in_words(p.finding);
         if (p.view == "block" && std::string_view(view) != "block") {
             if (p.block.empty()) continue;
             p.basis.clear();
@@ -16,7 +18,11 @@ QUADRANT_DIAGNOSIS_DECL void join(axis_result& result, std::vector<cause>& cause
     }
     for (auto& p : o.calibrated) result.calibrated.push_back(std::move(p));
     for (cause& c : o.causes) causes.push_back(std::move(c));
-    out.notes.insert(out.notes.end(), o.notes.begin(), o.notes.end());
+    for (std::string& note : o.notes) {
+        in_words(note);
+        out.notes.push_back(std::move(note));
+    }
+    in_words(o.structure);
     if (o.verdict > verdict::explained)
         out.remaining_structure += (out.remaining_structure.empty() ? "" : "; ") + o.structure;
     out.share_unexplained = std::max(out.share_unexplained, o.share_left);
