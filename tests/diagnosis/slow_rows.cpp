@@ -63,18 +63,22 @@ std::string record() {
     return out;
 }
 
+/// `axis`: plant and tolerances.
+diagnosis_result diagnosed(const std::string& axis) {
+    const auto machine =
+        read_machine(R"({"schema": "quadrant.machine/1", "sample_period_s": 0.1, "axes": {"q": {)" + axis +
+                         R"(, "encoder": {"resolution_rad": 1e-5}, "actuator": {"command_is": "measured"}}}})",
+                     "joint.json");
+    std::istringstream file(record());
+    return diagnose(machine, read_log(file, "joint.csv"));
+}
+const std::string without_friction = R"("plant": {"inertia_kg_m2": 8.2})";
+
 } // namespace
 
 TEST_CASE("diagnose: no friction beyond what the torque shows, where rows are slow") {
-    const auto machine =
-        read_machine(std::string_view(R"({"schema": "quadrant.machine/1", "sample_period_s": 0.1,
-        "axes": {"q": {"plant": {"inertia_kg_m2": 8.2}, "encoder": {"resolution_rad": 1e-5},
-        "actuator": {"command_is": "measured"}}}})"),
-                     "joint.json");
-    std::istringstream file(record());
-    const auto d = diagnose(machine, read_log(file, "joint.csv"));
+    const auto d = diagnosed(without_friction);
     CAPTURE(said(d));
-    // That two frictions share it is not found here, of the real joint it is (tests/real/robots.py, ur5_slow).
     REQUIRE(!d.causes.empty());
     const cause& first = d.causes.front();
     CHECK((first.effect == "viscous_friction" || first.effect == "coulomb_friction"));
@@ -84,4 +88,22 @@ TEST_CASE("diagnose: no friction beyond what the torque shows, where rows are sl
         CHECK(found.low < viscous);
         CHECK(found.high > viscous);
     }
+}
+
+// Not yet: one name for both is suspected. Of the real joint both are claimed (tests/real/robots.py, ur5_slow).
+TEST_CASE("diagnose: where rows are slow, Coulomb friction is told beside viscous friction" *
+          doctest::should_fail()) {
+    const auto d = diagnosed(without_friction);
+    CAPTURE(said(d));
+    bool dry = false;
+    for (const cause& c : d.causes) dry |= c.effect == "coulomb_friction" && c.group_probability > 0.3;
+    CHECK(dry);
+}
+
+TEST_CASE("diagnose: where rows are slow, a joint as described is blamed for nothing") {
+    const auto d =
+        diagnosed(R"("plant": {"inertia_kg_m2": 8.2, "viscous_Nm_s_per_rad": 31.5, "coulomb_Nm": 21.2},
+                     "tolerance": {"inertia": 0.02, "viscous": 0.02, "coulomb": 0.02})");
+    CAPTURE(said(d));
+    for (const cause& c : d.causes) CHECK(c.group_probability < 0.5);
 }

@@ -6,9 +6,7 @@ namespace quadrant::inline v0::diagnosis::chain {
 QUADRANT_DIAGNOSIS_DECL void join(axis_result& result, std::vector<cause>& causes, diagnosis_result& out,
                                   outcome&& o, const char* view) {
     result.verdict = std::max(result.verdict, o.verdict);
-    const auto in_words = [&](std::string& text) { text = text_of(text, result.kind); };
     for (place& p : o.places) {
-        in_words(p.finding);
         if (p.view == "block" && std::string_view(view) != "block") {
             if (p.block.empty()) continue;
             p.basis.clear();
@@ -18,13 +16,10 @@ QUADRANT_DIAGNOSIS_DECL void join(axis_result& result, std::vector<cause>& cause
     }
     for (auto& p : o.calibrated) result.calibrated.push_back(std::move(p));
     for (cause& c : o.causes) causes.push_back(std::move(c));
-    for (std::string& note : o.notes) {
-        in_words(note);
-        out.notes.push_back(std::move(note));
-    }
-    in_words(o.structure);
+    for (const std::string& note : o.notes) out.notes.push_back(text_of(note, result.kind));
     if (o.verdict > verdict::explained)
-        out.remaining_structure += (out.remaining_structure.empty() ? "" : "; ") + o.structure;
+        out.remaining_structure +=
+            (out.remaining_structure.empty() ? "" : "; ") + text_of(o.structure, result.kind);
     out.share_unexplained = std::max(out.share_unexplained, o.share_left);
 }
 

@@ -51,15 +51,6 @@ template <class Use> void in_lanes(std::span<std::vector<double>> signals, const
 
 } // namespace detail
 
-QUADRANT_DIAGNOSIS_DECL std::vector<double>
-predictor::quick_part_of_velocity(const std::vector<double>& way) const {
-    std::vector<double> v(way.size(), 0.0);
-    for (std::size_t k = 1; k + 1 < way.size(); ++k) v[k] = (way[k + 1] - way[k - 1]) / (2 * period);
-    const std::vector<double> slow = zero_phase(v, corner_Hz, period);
-    for (std::size_t k = 0; k < v.size(); ++k) v[k] -= slow[k];
-    return v;
-}
-
 QUADRANT_DIAGNOSIS_DECL void predictor::forces_beside(const led_motion& by, std::span<const plant_model> plants,
                                                       std::span<const double> u,
                                                       std::span<std::vector<double>> left) const {
@@ -78,7 +69,6 @@ QUADRANT_DIAGNOSIS_DECL void predictor::forces_beside(const led_motion& by, std:
         for (std::size_t k = 0; k < n; ++k) rows.set(k, all[k]);
     });
     std::vector<double> of_way; // acceleration that the motion needs, where no reading is in error
-    const std::vector<double> quick = quick_part_of_velocity(by.way);
     for (std::size_t i = 0; i < plants.size(); ++i) {
         const plant_model& p = plants[i];
         const double base = p.moving_mass() - p.second_mass();
@@ -90,7 +80,7 @@ QUADRANT_DIAGNOSIS_DECL void predictor::forces_beside(const led_motion& by, std:
         const auto put = [&](const auto& a_volt) {
             for (std::size_t k = 1; k + 1 < n; ++k)
                 left[i][k] = by.counts[k] ? by.force_constant / a_volt(k) *
-                                                (left[i][k] - base * of_way[k] - viscous(k) * quick[k])
+                                                (left[i][k] - base * of_way[k] - viscous(k) * by.quick[k])
                                           : 0;
             if (n > 0) left[i].front() = left[i].back() = 0;
         };

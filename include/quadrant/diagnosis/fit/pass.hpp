@@ -65,7 +65,7 @@ public:
         const Real e = Real(in.position[k]) - newer_.reading(state_);
         keep(in, in.innovation, k, e);
         if (in.leads)
-            state_.lead(e, velocity_ahead(in, k) - newer_.seen_velocity(state_));
+            state_.lead(e, faster_ahead(in, k));
         else
             state_.shift(Real(in.to_position) * e, Real(in.to_velocity) * e);
         begun_at_ = newer_.seen(state_);
@@ -126,11 +126,11 @@ private:
           newer_(boxes, (Real(in.period) - d.late) * part(in), already_checked()),
           state_(axis::state::at(newer_.position_of(Real(in.position[0])))) {}
 
-    /// Of the motion that is led along, in the period that begins at row k: with that of the one before, each
-    /// friction would act a row late.
-    static Real velocity_ahead(const pass_input& in, std::size_t k) {
-        const std::size_t from = k + 1 < in.rows ? k : in.rows - 2;
-        return Real((in.position[from + 1] - in.position[from]) / in.period);
+    /// By how much the motion that is led along is faster in the period that begins at row k: with the velocity
+    /// of the period before, each friction would act a row late.
+    Real faster_ahead(const pass_input& in, std::size_t k) const {
+        if (k + 1 == in.rows) return Real(0); // no period begins there
+        return Real((in.position[k + 1] - in.position[k]) / in.period) - newer_.seen_velocity(state_);
     }
     static Real part(const pass_input& in) { return Real(1 / static_cast<double>(in.substeps)); }
     /// Through a part of the period of this length.

@@ -80,9 +80,6 @@ struct predictor {
     /// described force constant [N]; 0 where that motion does not count. At most `abreast` plants.
     void forces_beside(const led_motion& by, std::span<const plant_model> plants, std::span<const double> u,
                        std::span<std::vector<double>> left) const;
-    /// What the filter of the forces takes off of this motion's velocity [m/s]: the motion is filtered already,
-    /// and its viscous friction would be filtered twice.
-    std::vector<double> quick_part_of_velocity(const std::vector<double>& way) const;
 
     /// Rows of the innovations: those of the position, and behind them, where something was measured behind the
     /// drive, what the drive gives otherwise.

@@ -65,6 +65,9 @@ QUADRANT_DIAGNOSIS_DECL std::shared_ptr<const led_motion> motion_to_lead(const a
                                                                          const plant_model& described) {
     auto out = std::make_shared<led_motion>();
     out->way = zero_phase(r.position, r.scale.corner_Hz, r.period);
+    out->quick = derivative(out->way, r.period);
+    const auto slow = zero_phase(out->quick, r.scale.corner_Hz, r.period);
+    for (std::size_t k = 0; k < slow.size(); ++k) out->quick[k] -= slow[k];
     out->mass = described.moving_mass();
     out->force_constant = described.force_constant;
     const double surely = 3 * r.resolution / r.scale.response();
