@@ -155,7 +155,7 @@ TEST_CASE("import: what is wrong in the map is told by its key") {
     CHECK(of_map(changed("/axes/x/command/unit", "N m"))
               .find("map.json: axes.x.command.unit: \"N m\" is not a unit") == 0);
     CHECK(of_map(changed("/axes/x/command/unit", "Nm")) ==
-          "map.json: axes.x.command.unit: must be of V, A or N (set-points of a drive: of m/s or m)");
+          "map.json: axes.x.command.unit: must be of V, A, N or duty (set-points of a drive: of m/s or m)");
     auto measured = changed("/axes/x/command/unit", "m/s");
     measured.insert(measured.find("\"m/s\"") + 5, ", \"is\": \"measured\"");
     CHECK(of_map(measured) == "map.json: axes.x.command: is a set-point: it is asked for, not measured");
@@ -344,6 +344,21 @@ TEST_CASE("import: columns with our names need no map, whatever their units") {
               map_of_header("t_s,b\n1,2\n", "in");
           }).starts_with("in:1:1: no column such as x_pos_m"));
     CHECK(refusal_of([] { map_of_header("", "in"); }) == "in: is empty");
+}
+
+TEST_CASE("import: a commanded duty is a share in its own unit, beside a duty that was measured") {
+    const auto written = [](const std::string& map, const std::string& log) {
+        return import_log(read_import_map(map, "map.json"), log, "in.txt").text;
+    };
+    const auto own = map_of_header("t_s,q_pos_rad,q_cmd_duty,q_duty\n0,0,0,0\n", "in");
+    REQUIRE(own.axes.size() == 1);
+    CHECK(own.axes[0].find(signal_role::command)->si == "duty");
+    CHECK(own.axes[0].find(signal_role::duty)->si == "1");
+    const std::string percent = R"({"schema": "quadrant.import/1", "header": "t", "time": {"column": "t", "unit": "s"},
+        "axes": {"q": {"position": {"column": "q", "unit": "rad"}, "command": {"column": "u", "unit": "%"},
+                       "duty": {"column": "d", "unit": "duty"}}}})";
+    CHECK(written(percent, "t,q,u,d\n0,1,50,0.5\n1,2,-100,-1\n2,3,25,0.25\n") ==
+          "t_s,q_pos_rad,q_cmd_duty,q_duty\n0,1,0.5,0.5\n1,2,-1,-1\n2,3,0.25,0.25\n");
 }
 
 TEST_CASE("import: what halscope saves has its period in the first line and one row too many") {

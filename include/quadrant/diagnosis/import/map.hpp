@@ -37,7 +37,8 @@ struct signal_kind {
 inline constexpr std::array signal_kinds{
     signal_kind{signal_role::reference, "reference", "_ref_", "m", "rad"},
     signal_kind{signal_role::position, "position", "_pos_", "m", "rad"},
-    signal_kind{signal_role::command, "command", "_cmd_", "V A N m_per_s m", "V A Nm rad_per_s rad", true},
+    signal_kind{signal_role::command, "command", "_cmd_", "V A N duty m_per_s m", "V A Nm duty rad_per_s rad",
+                true},
     signal_kind{signal_role::reference_velocity, "reference_velocity", "_ref_", "m_per_s", "rad_per_s"},
     signal_kind{signal_role::velocity, "velocity", "_vel_", "m_per_s", "rad_per_s"},
     signal_kind{signal_role::current, "current", "_current_", "A", "A"},
@@ -53,6 +54,13 @@ constexpr const signal_kind& kind_of(signal_role role) {
     for (const signal_kind& k : signal_kinds)
         if (k.role == role) return k;
     return signal_kinds[0];
+}
+
+/// The unit of a signal in this role: a share that is commanded is a duty, as its column's name says; elsewhere
+/// a duty is a share.
+constexpr std::string_view unit_as(signal_role role, std::string_view si) {
+    if (role == signal_role::command) return si == "1" ? "duty" : si;
+    return si == "duty" ? "1" : si;
 }
 
 /// Whether a command in this unit is the set-point of a drive, not a force or what makes one.

@@ -187,8 +187,10 @@ private:
                 if (is->text() == "measured") a.command_is = command_origin::measured;
             }
             a.signals.push_back({kind.role, read_signal(*given)});
-            need_unit(*given, kind, a.signals.back().from.si, rotary);
-            if (kind.role == signal_role::command && is_set_point(a.signals.back().from.si) &&
+            std::string& si = a.signals.back().from.si;
+            si = unit_as(kind.role, si);
+            need_unit(*given, kind, si, rotary);
+            if (kind.role == signal_role::command && is_set_point(si) &&
                 a.command_is == command_origin::measured)
                 given->refuse("is a set-point: it is asked for, not measured");
         }
@@ -205,8 +207,8 @@ private:
         if (kind.role == signal_role::reference)
             fault.refuse("must be of the same kind as that of the position");
         if (kind.role == signal_role::command)
-            fault.refuse(rotary ? "must be of V, A or Nm (set-points of a drive: of rad/s or rad)"
-                                : "must be of V, A or N (set-points of a drive: of m/s or m)");
+            fault.refuse(rotary ? "must be of V, A, Nm or duty (set-points of a drive: of rad/s or rad)"
+                                : "must be of V, A, N or duty (set-points of a drive: of m/s or m)");
         std::string text(legal);
         for (auto at = text.find("_per_"); at != text.npos; at = text.find("_per_")) text.replace(at, 5, "/");
         fault.refuse("must be a unit that gives " + text);

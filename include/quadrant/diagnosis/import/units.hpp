@@ -44,6 +44,7 @@ inline constexpr std::array unit_names{
     unit_name{"rpm", "rad_per_s", 2 * std::numbers::pi / 60},
     unit_name{"1", "1", 1}, // a share, or a yes and no
     unit_name{"%", "1", 0.01},
+    unit_name{"duty", "duty", 1}, // a share, of a command
 };
 
 /// Null where the name is not known.
