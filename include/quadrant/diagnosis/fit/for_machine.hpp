@@ -7,16 +7,17 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace quadrant::inline v0::diagnosis {
 
 /// The record with its observer stepping as finely as the described machine needs.
-/// `nearest`: to what the machine does, of the models that are known, for what is evaluated on its path or led
-/// along its motion; null: the described machine, and no floor but that of the reading.
+/// `known`: models near what the machine does, for what is evaluated on its path (the nearest alone) or led
+/// along its motion; none: the described machine, and no floor but that of the reading.
 QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_description& a,
                                                 held_by how = held_by::readings,
-                                                const plant_model* nearest = nullptr);
+                                                std::span<const plant_model> known = {});
 
 /// The described machine with the mass, friction, constant force and gravity that a regression of the command
 /// on the record's motion has; nothing where it is not sure of a mass.

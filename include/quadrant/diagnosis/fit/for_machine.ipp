@@ -69,7 +69,7 @@ as_regressed_on_motion(const axis_record& r, axis_kind kind, const plant_model& 
 }
 
 QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_description& a, held_by how,
-                                                const plant_model* nearest) {
+                                                std::span<const plant_model> known) {
     const plant_model described(a, r.scale.give());
     if (how == held_by::motion) r.observer.led = motion_to_lead(r, described);
     r.observer.substeps = substeps_of(described, r.period);
@@ -88,8 +88,8 @@ QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_descri
         }
     }
     detail::add_noise_of_measured(r, a, described);
-    if (how == held_by::loop) judge_path(r, described, nearest ? *nearest : described);
-    if (how == held_by::motion && nearest) judge_beside_what_is_left(r, *nearest);
+    if (how == held_by::loop) judge_path(r, described, known.empty() ? described : known.front());
+    if (how == held_by::motion && !known.empty()) judge_beside_what_is_left(r, known);
     return r;
 }
 

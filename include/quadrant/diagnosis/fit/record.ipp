@@ -217,12 +217,15 @@ QUADRANT_DIAGNOSIS_DECL void judge_path(axis_record& r, const plant_model& descr
     s.channels = std::move(out);
 }
 
-QUADRANT_DIAGNOSIS_DECL void judge_beside_what_is_left(axis_record& r, const plant_model& nearest) {
-    std::vector<double> e;
-    r.observer.run(nearest, e);
+QUADRANT_DIAGNOSIS_DECL void judge_beside_what_is_left(axis_record& r, std::span<const plant_model> known) {
+    std::vector<std::vector<double>> e(known.size());
+    r.observer.run(known, e);
     for (channel& c : r.score.channels) {
-        auto left = detail::block_ms(e, c);
-        if (!left.empty()) c.floor = std::hypot(c.floor, std::sqrt(quantile(std::move(left), 0.5)));
+        if (c.first_of_block.empty()) continue;
+        double least = std::numeric_limits<double>::infinity();
+        for (const auto& each : e) least = std::min(least, quantile(detail::block_ms(each, c), 0.5));
+        c.unknown = std::sqrt(least);
+        c.floor = std::hypot(c.floor, c.unknown);
     }
 }
 

@@ -29,12 +29,12 @@ public:
 
 private:
     /// The log made ready. How many independent readings a path holds, only a model near the machine shows: the
-    /// error of a wrong one is one long wave. So a first search looks for one. Along a motion it is the nearest
-    /// of the models that were found `before`, and of their causes fitted again along it. `tap`: how that is
-    /// read, where it is known.
+    /// error of a wrong one is one long wave. So a first search looks for one. Along a motion the models that
+    /// were found `before`, and their causes fitted again along it, are such. `tap`: how that is read, where it
+    /// is known.
     axis_record record_of(double period, const exclusions& excluded, const progress& tell, held_by how,
                           const axis_case* before, std::optional<tap_reading> tap);
-    std::optional<plant_model> nearest_; ///< of that search
+    std::vector<plant_model> known_; ///< near what the machine does, of that search
     /// How far apart machines inside the owner's tolerances are on the hold-out log's motion.
     const std::vector<double>& cloud_of_second() const;
     mutable std::vector<double> cloud_of_second_{}; ///< found when it is asked for

@@ -22,7 +22,7 @@ QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const ax
     if (controller_unnamed) controller->mended = false;
     if (holdout)
         second = for_machine(in_pieces(prepare(*holdout, period, resolution, record.scale), motions_of_second),
-                             axis, how, nearest_ ? &*nearest_ : nullptr);
+                             axis, how, known_);
     count_unnamed = coarse() && excluded.contains("encoder_quantization");
     models.begins(tell.part(detail::share_of_record(how), 1));
     follow(models.run());
@@ -45,17 +45,15 @@ QUADRANT_DIAGNOSIS_DECL axis_record axis_case::record_of(double period, const ex
         return s;
     };
     if (how == held_by::motion && before) {
-        std::vector<plant_model> known{first().with(before->best().effects).fit.plant};
-        for (const candidate& m : before->path) known.push_back(m.fit.plant);
+        known_.push_back(first().with(before->best().effects).fit.plant);
+        for (const candidate& m : before->path) known_.push_back(m.fit.plant);
         if (forgets_within_the_response(before->best().fit.plant, out))
             if (const auto other = as_regressed_on_motion(out, log.kind, {axis, out.scale.give()}))
-                known.push_back(*other);
-        const auto left = before->left_along_motion(known);
-        nearest_ = known[static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin())];
+                known_.push_back(*other);
     } else if (how == held_by::loop) {
-        nearest_ = first().nearest();
+        known_.push_back(first().nearest());
     }
-    if (nearest_) out = for_machine(ready, axis, how, &*nearest_);
+    if (!known_.empty()) out = for_machine(ready, axis, how, known_);
     out.tap = tap;
     return out;
 }

@@ -24,24 +24,23 @@ inline fold_sums sums_of(candidate& c, const scoring& s) {
     fold_sums out;
     out.all = {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
     out.of.fill(out.all);
-    c.curvature = Eigen::MatrixXd::Zero(n, n);
+    c.curvature = c.unknown = Eigen::MatrixXd::Zero(n, n);
     c.gradient = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(s.segments));
     Eigen::MatrixXd scratch;
     each_channel(c.fit, s, [&](const auto& blocks, const channel& view) {
         for (std::size_t b = 0; b < blocks.size(); ++b) {
-            const double w = view.nu / (blocks.ms[b] + view.least(b));
+            const double whole = blocks.ms[b] + view.least(b), w = view.nu / whole;
             auto& f = out.of[fold_of(view.segment_of_block[b])];
             const Eigen::MatrixXd& curvature = blocks.curvature(b, scratch);
             f.a += w * curvature;
             f.g += w * blocks.gradient(b);
             c.curvature += w * curvature;
+            if (view.unknown > 0) c.unknown += w * square(view.unknown) / whole * curvature;
             c.gradient.col(static_cast<Eigen::Index>(view.segment_of_block[b])) += w * blocks.gradient(b);
         }
     });
-    for (const auto& f : out.of) {
-        out.all.a += f.a;
-        out.all.g += f.g;
-    }
+    for (const auto& f : out.of) out.all.a += f.a;
+    for (const auto& f : out.of) out.all.g += f.g;
     return out;
 }
 

@@ -10,6 +10,7 @@ QUADRANT_DIAGNOSIS_DECL Eigen::MatrixXd covariance(const candidate& c, const sco
     for (const auto& g : c.gradient.colwise()) mean += g / static_cast<double>(s.segments);
     for (const auto& g : c.gradient.colwise()) scatter += (g - mean) * (g - mean).transpose();
     if (s.segments > 1) scatter *= static_cast<double>(s.segments) / static_cast<double>(s.segments - 1);
+    scatter += c.unknown;
     for (Eigen::Index i = 0; i < n; ++i)
         if (const auto& p = c.fit.parameters[static_cast<std::size_t>(i)]; p.spread > 0) {
             h(i, i) += 1 / (p.spread * p.spread);

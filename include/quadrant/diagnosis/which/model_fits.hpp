@@ -78,8 +78,13 @@ protected:
     /// beside a drive's loops those of a number at whose tolerance calibration stops.
     void finish_near(const std::vector<std::size_t>& which, std::size_t fitted, const candidate& from,
                      std::vector<candidate>& models) const;
-    /// A model that scores worse than one of its parts stopped short: it is fitted again with what that part
-    /// lacks, from the part's numbers; all of these side by side. `from`: where their own fits began.
+    /// Whether a number of a model ends at the upper end of its search short of where one of the model's parts
+    /// found it. How far a number is searched follows from the force that is left where it is added; beside a
+    /// cause that had taken most of its force, that says too little.
+    static bool ends_short_of(const candidate& c, const candidate& part);
+    /// A model that scores worse than one of its parts stopped short, or whose search ended short of what that
+    /// part found: it is fitted again with what the part lacks, from the part's numbers; all of these side by
+    /// side. `from`: where their own fits began.
     void mend_from_parts(std::vector<candidate>& models, const std::vector<std::size_t>& which,
                          const candidate& from) const;
 

@@ -166,6 +166,19 @@ QUADRANT_DIAGNOSIS_DECL std::string model_fits::describe(const candidate& c) con
     return (out += ": gain ") += std::to_string(static_cast<long>(c.total - calibrated_.total));
 }
 
+QUADRANT_DIAGNOSIS_DECL bool model_fits::ends_short_of(const candidate& c, const candidate& part) {
+    for (std::size_t i = 0; i < c.fit.parameters.size(); ++i) {
+        const parameter& p = c.fit.parameters[i];
+        const double x = p.from_fit(c.fit.x[static_cast<Eigen::Index>(i)]);
+        if (p.spread > 0 || !c.ends_at_a_bound(i) || x - p.low < p.high - x) continue;
+        for (std::size_t j = 0; j < part.fit.parameters.size(); ++j)
+            if (const parameter& q = part.fit.parameters[j];
+                q.key == p.key && q.from_fit(part.fit.x[static_cast<Eigen::Index>(j)]) > p.high)
+                return true;
+    }
+    return false;
+}
+
 QUADRANT_DIAGNOSIS_DECL void model_fits::mend_from_parts(std::vector<candidate>& models,
                                                          const std::vector<std::size_t>& which,
                                                          const candidate& from) const {
@@ -176,7 +189,7 @@ QUADRANT_DIAGNOSIS_DECL void model_fits::mend_from_parts(std::vector<candidate>&
         const candidate* part = nullptr;
         for (const candidate& t : tried_)
             if (t.effects.size() + 1 == c.effects.size() && has_all(c, t) && !same(t, from) &&
-                t.total > c.total + rules_.margin && (!part || t.total > part->total))
+                (t.total > c.total + rules_.margin || ends_short_of(c, t)) && (!part || t.total > part->total))
                 part = &t;
         if (!part || over()) continue;
         const auto lacks =
