@@ -81,7 +81,7 @@ cat <<END
 ## The diagnosis, compiled once
 
 The files of the CMake target \`quadrant_diagnosis_once\`, with g++ \`-O2\`. None may take more than 15 s or 600 MB
-(\`sh benchmarks/compile_cost.sh files\`, in ctest \`headers.files\` with \`QUADRANT_TESTS=all\`).
+(\`sh benchmarks/compile_cost.sh files\`, in ctest \`headers.files\` of \`sh tests/run.sh long\`).
 
 | file | s | MB |
 |---|---|---|

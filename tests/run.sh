@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSL-1.0
 # usage: tests/run.sh          everything that a change must pass
 #        tests/run.sh all      and a second sanitizer (threads), clang-tidy, longer fuzzing, every case of every test
-#        tests/run.sh PHASE... of: release sanitize thread fuzz callgrind tidy
+#        tests/run.sh long     before a release: a soak of 1e9 samples, each file compiled alone (the tests of the label "long")
+#        tests/run.sh PHASE... of: release sanitize thread fuzz callgrind tidy long
 # Environment: QUADRANT_SHARED  folder with gap/ and data/ (default: shared beside the repository)
 #              QUADRANT_BUILD   where to build (default: build in the repository)
 # The last line is "N passed, N failed, N skipped"; the exit code is 1 when something failed.
@@ -22,14 +23,17 @@ fuzz_seconds=20          # of processor time, all fuzzers together
 tests=                   # CMake's QUADRANT_TESTS
 optimised=clang          # the preset of the phase release: a test compiles in half of the time that g++ takes
 large_pages=glibc.malloc.hugetlb=1 # of the memory of Clang: a sixth of its time
+compilers=g++            # whose instructions are counted: an integrator's
 together=13              # CMake's QUADRANT_TOGETHER: half of the processor time, and up to 3.1 GB a compiler
 
 case "${1-}" in
 '') set -- release sanitize fuzz callgrind ;;
 all)
     fuzz_seconds=60 tests=all optimised=release
+    compilers='g++ clang++'
     set -- release sanitize thread fuzz callgrind tidy
     ;;
+long) tests=all optimised=release ;;
 esac
 
 passed=0 failed=0 skipped=0
@@ -117,7 +121,10 @@ run_ctest() { # PRESET CTEST-ARGUMENTS...
 }
 
 release() { # every test, what must not compile with both compilers, the consumers by g++, the page in a browser
-    build_preset $optimised all && run_ctest $optimised
+    build_preset $optimised all && run_ctest $optimised -LE long
+}
+long() { # what takes hours, and a change hardly breaks
+    build_preset $optimised all && run_ctest $optimised -L long
 }
 sanitize() { # Clang, address and undefined-behaviour sanitizers: the test executables, and the fuzzer beside them
     build_preset sanitize unit_tests fuzz && run_ctest sanitize -R '^unit\.'
@@ -169,12 +176,12 @@ fuzz() { # libFuzzer on the file readers; the first byte of an input chooses the
 }
 callgrind() { # the typed axis loop needs no more instructions than the hand-written one; the compilers side by side
     installed
-    for compiler in g++ clang++; do
+    for compiler in $compilers; do
         { QUADRANT_BUILD="$build" COMPILERS=$compiler sh benchmarks/callgrind.sh; echo $? >"$logs/callgrind-$compiler.code"; } \
             >"$logs/callgrind-$compiler.txt" 2>&1 &
     done
     wait
-    for compiler in g++ clang++; do
+    for compiler in $compilers; do
         case $(cat "$logs/callgrind-$compiler.code") in
         0) cat "$logs/callgrind-$compiler.txt"; count 1 0 0 ;;
         77) left_out "$(cat "$logs/callgrind-$compiler.txt")" ;;
@@ -210,7 +217,7 @@ packages=$!
 
 for phase; do
     case $phase in
-    release | sanitize | thread | fuzz | callgrind | tidy) ;;
+    release | sanitize | thread | fuzz | callgrind | tidy | long) ;;
     *) echo "no phase $phase"; exit 2 ;;
     esac
     began=$(date +%s) p=$passed f=$failed s=$skipped

@@ -104,7 +104,8 @@ TEST_CASE("controller kinds: a log that begins in the middle of a motion is repl
 
 TEST_CASE(
     "controller kinds: a key that is off by 10 % and shows in the command is found, alone or with those that "
-    "correct as well") {
+    "correct as well" *
+    doctest::test_suite("all")) {
     for (const axis_description& axis : machine().axes) {
         CAPTURE(axis.name);
         const auto& described = *axis.controller;

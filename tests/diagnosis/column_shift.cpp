@@ -47,7 +47,8 @@ TEST_CASE("column shift: another controller is none, on rows that stand right or
     stand_later(log.command, 1);
     CHECK_FALSE(shift_of(log, file));
 }
-TEST_CASE("column shift: a log sampled between the parts of its loop has the causes of the machine") {
+TEST_CASE("column shift: a log sampled between the parts of its loop has the causes of the machine" *
+          doctest::test_suite("all")) {
     workshop::machine real;
     const auto file = workshop::described(real);
     real.coulomb *= 1.3;

@@ -166,7 +166,8 @@ TEST_CASE(
 }
 TEST_CASE("position drive with a measured current: a force constant inside its tolerance moves the gains "
           "as the "
-          "current shows them, and nobody is blamed") {
+          "current shows them, and nobody is blamed" *
+          doctest::test_suite("all")) {
     constexpr double constant = 20; // [N/A]
     auto m = machine_of(off_by(described, {1.02, 1.1, 1.04, 1.01, 0.98, 1.005, 1.03}), 1e-6, 1);
     auto machine = file_of(described, tolerance, 1e-6, 1);

@@ -111,7 +111,8 @@ TEST_CASE("position drive: another gain of the position loop is found beside a d
 }
 
 TEST_CASE("position drive: where its velocity loop answers between two rows its path is judged, and a healthy "
-          "axis is blamed for nothing") {
+          "axis is blamed for nothing" *
+          doctest::test_suite("all")) {
     constexpr double period = 1e-2;
     const auto log = recorded(axis, period, 0.6), holdout = recorded(axis, period, 0.5, 2);
     for (const machine_log* beside : {static_cast<const machine_log*>(nullptr), &holdout}) {

@@ -112,7 +112,8 @@ TEST_CASE("velocity drive, PI: the friction that its integral hides is found wit
 }
 TEST_CASE(
     "velocity drive with a measured current: every number of the file is wrong by most of its tolerance, and "
-    "nobody is blamed, whichever way the current is read") {
+    "nobody is blamed, whichever way the current is read" *
+    doctest::test_suite("all")) {
     auto m = pi_drive;
     m.force_of_current = 20;
     m.mass = 103;
@@ -137,7 +138,8 @@ TEST_CASE(
 }
 TEST_CASE(
     "velocity drive with a measured current: the noise of the position does not decide how the current is "
-    "read, where the set-points arrive within a row") {
+    "read, where the set-points arrive within a row" *
+    doctest::test_suite("all")) {
     auto m = pi_drive;
     m.force_of_current = 20;
     m.delay = 7.5e-4;
@@ -265,7 +267,8 @@ TEST_CASE("velocity drive: set-points that come late are the drive's delay" * do
     REQUIRE((delay = only_claim(d, "command_delay")));
     CHECK(value_of(*delay, "drive.command_delay_s") == doctest::Approx(4e-3).epsilon(0.1));
 }
-TEST_CASE("velocity drive: one that measures its velocity late has no set-points that come early") {
+TEST_CASE("velocity drive: one that measures its velocity late has no set-points that come early" *
+          doctest::test_suite("all")) {
     auto m = pi_drive;
     m.mass = 120;
     m.velocity_filter = 0.3e-3;
@@ -470,7 +473,8 @@ TEST_CASE(
 }
 TEST_CASE("position drive: a constant force that no model has began in the integral of both logs, and takes "
           "nothing from "
-          "a cause") {
+          "a cause" *
+          doctest::test_suite("all")) {
     auto m = pi_drive;
     m.position_gain = 40;
     m.constant = -90;
@@ -502,7 +506,8 @@ TEST_CASE("position servo: another gain shows in the measured duty, where the pa
         tolerance[key] = share;
     CHECK(only_claim(diagnosed(loose.dump(), recorded(takes::servo, m, true)), "drive_gain"));
 }
-TEST_CASE("position servo: what its loop is said to have commanded, and nobody logged, judges no claim") {
+TEST_CASE("position servo: what its loop is said to have commanded, and nobody logged, judges no claim" *
+          doctest::test_suite("all")) {
     auto m = servo;
     m.duty_gain = 17; // the motion alone says so: the command of the described loop is no better with it
     const auto d = diagnosed(of_servo, recorded(takes::servo, m));
@@ -510,7 +515,7 @@ TEST_CASE("position servo: what its loop is said to have commanded, and nobody l
     CHECK(d.causes[0].group_probability >= 0.9);
     CHECK(d.verdict == verdict::explained);
 }
-TEST_CASE("position servo: a profile velocity in its registers is found") {
+TEST_CASE("position servo: a profile velocity in its registers is found" * doctest::test_suite("all")) {
     auto m = servo;
     m.rate_limit = 0.1;
     const cause* limit = nullptr;

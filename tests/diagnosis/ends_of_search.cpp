@@ -27,7 +27,8 @@ TEST_CASE("time delay: one of 24 rows is a delay with its value, no lag") {
     CHECK(workshop::near(workshop::value_of(d.causes[0], "delay_s").value, real.delay, 0.02));
 }
 
-TEST_CASE("Stribeck friction: a servo whose contact gives way by two counts has none") {
+TEST_CASE("Stribeck friction: a servo whose contact gives way by two counts has none" *
+          doctest::test_suite("all")) {
     drive_simulator::machine servo{.mass = 0.01,
                                    .coulomb = 0.03,
                                    .viscous = 0.05,

@@ -167,7 +167,8 @@ TEST_CASE("search: what comes near the best at a first look is fitted to the end
     CHECK(gained(0, rules{}.near_best) == fitted);
 }
 
-TEST_CASE("evidence: each direction has its own friction inside the tolerance, and beyond it a cause") {
+TEST_CASE("evidence: each direction has its own friction inside the tolerance, and beyond it a cause" *
+          doctest::test_suite("all")) {
     workshop::machine real;
     auto file = workshop::described(real);
     file.axes[0].tolerance.given["coulomb"] = 0.12; // 7 N

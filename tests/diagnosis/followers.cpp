@@ -81,7 +81,8 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("positions: a delay and a gain that are not there are taken off, and one that is there stays") {
+TEST_CASE("positions: a delay and a gain that are not there are taken off, and one that is there stays" *
+          doctest::test_suite("all")) {
     struct truth {
         double delay, lag; // [s]
     };
@@ -122,7 +123,8 @@ TEST_CASE("positions: a delay and a gain that are not there are taken off, and o
             }
 }
 
-TEST_CASE("positions: init writes no loops that leave more of the path than a gain alone") {
+TEST_CASE("positions: init writes no loops that leave more of the path than a gain alone" *
+          doctest::test_suite("all")) {
     std::istringstream text(milled());
     const auto log = read_log(text, "log.csv");
     init_request r;

@@ -142,7 +142,8 @@ TEST_CASE("gantry pair: the motors' forces tell how they push against each other
 }
 
 TEST_CASE("gantry pair: on a beam that may turn, the notes have the friction of each end, and which end stays "
-          "behind at a reversal") {
+          "behind at a reversal" *
+          doctest::test_suite("all")) {
     const auto d = diagnosed({.friction_1 = 32, .friction_2 = 8, .stiffness = 0});
     CAPTURE(told(d));
     CHECK(number_behind(d, "friction is ") == doctest::Approx(32).epsilon(0.05));

@@ -64,7 +64,8 @@ stated number(const initialised_machine& m, const char* box, const std::string& 
 
 } // namespace
 
-TEST_CASE("init: the loops of a velocity drive come from the log, each within its interval") {
+TEST_CASE("init: the loops of a velocity drive come from the log, each within its interval" *
+          doctest::test_suite("all")) {
     for (const auto& m : {pi_drive, p_drive}) {
         if (m.integral == 0 && !all_tests()) continue;
         const auto log = recorded(takes::volts, m);

@@ -103,7 +103,7 @@ def test_compensate_has_the_keys_of_the_controller(found):
 
 
 def test_compare_names_a_force_that_was_added(data, columns):
-    first = {name: values[:9000] for name, values in columns("holdout.csv").items()}
+    first = {name: values[:4500] for name, values in columns("holdout.csv").items()}
     second = {**first, "x_cmd_V": first["x_cmd_V"] + 0.05}
     found = quadrant.compare(first, second, data / "machine.json", fast=True)
     assert found.likeness == "differ"

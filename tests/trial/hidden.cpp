@@ -21,8 +21,8 @@ std::vector<double> motion_under(const std::vector<double>& volts, axis_truth a,
 
 } // namespace
 
-TEST_CASE(
-    "population: what numbers of a drive inside their tolerances do as well is no effect of its machine") {
+TEST_CASE("population: what numbers of a drive inside their tolerances do as well is no effect of its machine" *
+          doctest::test_suite("all")) {
     // Viscous friction behind a velocity loop without integral: the same volts move the axis as well where the
     // gain is larger by it, and the velocity a volt smaller in that ratio.
     const planned p = plan(20261210, 40, population::velocity_p)[30];
