@@ -358,7 +358,8 @@ TEST_CASE("import: a commanded duty is a share in its own unit, beside a duty th
         "axes": {"q": {"position": {"column": "q", "unit": "rad"}, "command": {"column": "u", "unit": "%"},
                        "duty": {"column": "d", "unit": "duty"}}}})";
     CHECK(written(percent, "t,q,u,d\n0,1,50,0.5\n1,2,-100,-1\n2,3,25,0.25\n") ==
-          "t_s,q_pos_rad,q_cmd_duty,q_duty\n0,1,0.5,0.5\n1,2,-1,-1\n2,3,0.25,0.25\n");
+          "t_s,q_pos_rad,q_cmd_duty,q_duty\n0.000000000,1,0.50,0.50\n1.000000000,2,-1.00,-1.00\n"
+          "2.000000000,3,0.25,0.25\n");
 }
 
 TEST_CASE("import: what halscope saves has its period in the first line and one row too many") {

@@ -41,7 +41,7 @@ inline std::optional<std::pair<std::string, signal_role>> named_signal(std::stri
         const signal_kind& kind = kind_of(role);
         const std::size_t at = name.rfind(kind.infix);
         if (at == name.npos || at == 0 || !is_axis_name(name.substr(0, at))) continue;
-        const std::string si(unit_as(role, unit ? unit->si : "1"));
+        const std::string si(unit ? unit_as(role, unit->si) : "1");
         const auto legal = [&](std::string_view units) {
             return (' ' + std::string(units) + ' ').find(' ' + si + ' ') != std::string::npos;
         };
@@ -81,7 +81,7 @@ inline import_map map_of_header(std::string_view text, std::string_view file) {
             if (!name.empty()) out.left_out.push_back(name);
             continue;
         }
-        source.si = unit_as(signal->second, source.si);
+        if (unit) source.si = unit_as(signal->second, unit->si);
         auto axis = std::find_if(out.axes.begin(), out.axes.end(),
                                  [&](const auto& a) { return a.name == signal->first; });
         if (axis == out.axes.end()) axis = out.axes.insert(axis, {signal->first, {}, command_origin::asked});

@@ -28,7 +28,8 @@ inline bool is_no_claim(const axis_case& c, const effect& e, const cause& named,
            (of_laws && on_axis && may_be_friction(c, e)) || c.is_error_of_its_law(e) ||
            may_be_inside_its_tolerance(c, named.parameters) || drowns_in_the_rest(c, e) ||
            lies_beyond(named, c.best()) || late_velocity(c, named) > 0 ||
-           repeats_with_the_motion(c.record, named) ||
+           repeats_with_the_motion(c.record, named) || rings_beyond(c.record, named) ||
+           outdoes_the_drive(c.record, c.best().fit.plant, named) ||
            std::any_of(e.ends_inside.begin(), e.ends_inside.end(),
                        [&](std::string_view key) { return !key.empty() && c.best().ends_at_a_bound(key); });
 }

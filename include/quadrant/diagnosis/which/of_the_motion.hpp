@@ -3,6 +3,10 @@
 #include "../fit/record.hpp"
 #include "../result/result.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 namespace quadrant::inline v0::diagnosis::detail {
 
 /// Whether a force that repeats in time does so near a frequency at which the axis itself moves, with a tenth
@@ -20,6 +24,29 @@ inline bool repeats_with_the_motion(const axis_record& r, const cause& named) {
             return square(rms(there)) > 0.1 * square(rms(r.velocity));
         }
     return false;
+}
+
+/// Whether a process pushes harder than the drive ever does in the record: so does what a loop does across a
+/// play, again and again; no axis machines with a process that it cannot hold.
+inline bool outdoes_the_drive(const axis_record& r, const plant_model& found, const cause& named) {
+    if (named.effect != "cutting_force" || found.drive.closes()) return false;
+    double command = 0, process = 0;
+    for (const double u : r.command) command = std::max(command, std::abs(u));
+    for (const double size : found.cutting.sizes()) process = std::max(process, std::abs(size));
+    return process > std::abs(found.force_constant) * command;
+}
+
+/// Whether a mode rings for longer than the record lasts: its ring falls to 1/e only behind the end.
+/// Then it is a force at one frequency, such as a harmonic of the motion, which a friction that is no straight
+/// line of the speed makes too.
+inline bool rings_beyond(const axis_record& r, const cause& named) {
+    double frequency = 0, damping = 0;
+    for (const parameter_estimate& p : named.parameters) {
+        if (p.key == "mode_frequency_Hz") frequency = p.values.front().value;
+        if (p.key == "mode_damping") damping = p.values.front().value;
+    }
+    const double lasts = static_cast<double>(r.position.size()) * r.period;
+    return frequency > 0 && 2 * std::numbers::pi * frequency * damping * lasts < 1;
 }
 
 } // namespace quadrant::inline v0::diagnosis::detail
