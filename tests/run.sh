@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSL-1.0
 # usage: tests/run.sh          everything that a change must pass
-#        tests/run.sh all      and a second sanitizer (threads), clang-tidy, longer fuzzing, every case of every test
+#        tests/run.sh all      and a second sanitizer (threads), clang-tidy, longer fuzzing, every case of every test but "long"
 #        tests/run.sh long     before a release: a soak of 1e9 samples, each file compiled alone (the tests of the label "long")
 #        tests/run.sh PHASE... of: release sanitize thread fuzz callgrind tidy long
 # Environment: QUADRANT_SHARED  folder with gap/ and data/ (default: shared beside the repository)
@@ -29,12 +29,13 @@ together=13              # CMake's QUADRANT_TOGETHER: half of the processor time
 case "${1-}" in
 '') set -- release sanitize fuzz callgrind ;;
 all)
+    [ $# = 1 ] || { echo "all stands alone"; exit 2; }
     fuzz_seconds=60 tests=all optimised=release
     compilers='g++ clang++'
     set -- release sanitize thread fuzz callgrind tidy
     ;;
-long) tests=all optimised=release ;;
 esac
+for phase; do [ "$phase" != long ] || tests=all optimised=release; done
 
 passed=0 failed=0 skipped=0
 packages= # the process that installs what only tests run
@@ -120,10 +121,10 @@ run_ctest() { # PRESET CTEST-ARGUMENTS...
     printf '(all of it: %s)\n' "$log"
 }
 
-release() { # every test, what must not compile with both compilers, the consumers by g++, the page in a browser
+release() { # every test but "long", what must not compile with both compilers, the consumers by g++, the page in a browser
     build_preset $optimised all && run_ctest $optimised -LE long
 }
-long() { # what takes hours, and a change hardly breaks
+long() { # what takes an hour, and a change hardly breaks
     build_preset $optimised all && run_ctest $optimised -L long
 }
 sanitize() { # Clang, address and undefined-behaviour sanitizers: the test executables, and the fuzzer beside them

@@ -117,7 +117,8 @@ QUADRANT_DIAGNOSIS_DECL void judge_path(axis_record& r, const plant_model& descr
 /// what half of the blocks stay below with the model that leaves least in it. The model that leaves least of
 /// the forces in all may leave more in a channel than another one, whose gain there would not count. Where
 /// forces act that no name explains, a quiet block is one that they happen to miss; without the floor it would
-/// count as much as a loud one, and a fit would polish it at the expense of the rest.
+/// count as much as a loud one, and a fit would polish it at the expense of the rest. Without a known model
+/// nothing changes.
 QUADRANT_DIAGNOSIS_DECL void judge_beside_what_is_left(axis_record& r, std::span<const plant_model> known);
 
 } // namespace quadrant::inline v0::diagnosis

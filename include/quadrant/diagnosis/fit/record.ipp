@@ -224,6 +224,7 @@ QUADRANT_DIAGNOSIS_DECL void judge_beside_what_is_left(axis_record& r, std::span
         if (c.first_of_block.empty()) continue;
         double least = std::numeric_limits<double>::infinity();
         for (const auto& each : e) least = std::min(least, quantile(detail::block_ms(each, c), 0.5));
+        if (!std::isfinite(least)) continue;
         c.unknown = std::sqrt(least);
         c.floor = std::hypot(c.floor, c.unknown);
     }

@@ -26,7 +26,7 @@ struct channel {
     std::size_t mean = 1, block = 100; ///< rows a mean, rows a block
     double nu = 3;                     ///< effective independent samples of a block
     double floor = 0;                  ///< [m]
-    double unknown = 0; ///< part of the floor: what the best known model leaves, which no name explains yet [m]
+    double unknown = 0; ///< part of the floor: the least that a known model leaves here [m]
     /// Mean square below which nothing counts, of each block; empty: that of the floor in all of them.
     std::vector<double> least_of_block{};
     double noise_gain = 1; ///< rms of the means for white noise of the reading with rms 1

@@ -56,11 +56,11 @@ constexpr const signal_kind& kind_of(signal_role role) {
     return signal_kinds[0];
 }
 
-/// The unit of a signal in this role: a share that is commanded is a duty, as its column's name says; elsewhere
-/// a duty is a share.
+/// The unit of a signal in this role. A command without dimension has the unit duty, in which the name of its
+/// column ends; of the duty signal the unit duty is read as 1.
 constexpr std::string_view unit_as(signal_role role, std::string_view si) {
     if (role == signal_role::command) return si == "1" ? "duty" : si;
-    return si == "duty" ? "1" : si;
+    return role == signal_role::duty && si == "duty" ? "1" : si;
 }
 
 /// Whether a command in this unit is the set-point of a drive, not a force or what makes one.

@@ -24,7 +24,8 @@ struct candidate {
     Eigen::MatrixXd curvature{};          ///< of the score, without what the owner knows
     Eigen::MatrixXd gradient{};           ///< of the score, one column a motion segment
     /// Its variance for forces without a name as large as the floor takes them for: what is left below them
-    /// scatters less, and moves the score less than they may have moved the numbers.
+    /// scatters less, and moves the score less than they may have moved the numbers. What is left above them is
+    /// in the scatter already: there an interval is wider by up to a square root of two.
     Eigen::MatrixXd unknown{};
     /// rms of the residual force on held-out motion [N], once it was asked for; copies share it.
     std::shared_ptr<std::optional<double>> held_out_force = std::make_shared<std::optional<double>>();

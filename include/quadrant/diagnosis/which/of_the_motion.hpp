@@ -26,8 +26,8 @@ inline bool repeats_with_the_motion(const axis_record& r, const cause& named) {
     return false;
 }
 
-/// Whether a process pushes harder than the drive ever does in the record: so does what a loop does across a
-/// play, again and again; no axis machines with a process that it cannot hold.
+/// Whether one harmonic of a process is larger than any force of the drive in the record: a loop that swings
+/// across a play makes such a force. A real one that the mass alone carries is not told from it.
 inline bool outdoes_the_drive(const axis_record& r, const plant_model& found, const cause& named) {
     if (named.effect != "cutting_force" || found.drive.closes()) return false;
     double command = 0, process = 0;
@@ -36,9 +36,9 @@ inline bool outdoes_the_drive(const axis_record& r, const plant_model& found, co
     return process > std::abs(found.force_constant) * command;
 }
 
-/// Whether a mode rings for longer than the record lasts: its ring falls to 1/e only behind the end.
-/// Then it is a force at one frequency, such as a harmonic of the motion, which a friction that is no straight
-/// line of the speed makes too.
+/// Whether a mode rings for longer than the record lasts: its ring falls to 1/e after the end of the record.
+/// Then it is a force at one frequency, such as a harmonic of the motion, which friction that is not linear in
+/// speed makes too.
 inline bool rings_beyond(const axis_record& r, const cause& named) {
     double frequency = 0, damping = 0;
     for (const parameter_estimate& p : named.parameters) {
