@@ -28,7 +28,7 @@ build_it() {
         cmake --build "$build" --target quadrant-gap --parallel "$cores"
 }
 program=$build/examples/quadrant-gap
-echo "building quadrant-gap (once; some 180 s of processor time, more with less than 8 GB, shared by $cores cores; what the compiler says: $log)"
+echo "building quadrant-gap (once; some 220 s of processor time, more with less than 8 GB, shared by $cores cores; what the compiler says: $log)"
 began=$(date +%s)
 build_it >"$log" 2>&1 || {
     tail -n 30 "$log" >&2

@@ -69,6 +69,20 @@ TEST_CASE("structural_resonance: a mode far below the corner that rings for long
     CHECK(workshop::claims(d) == std::vector<std::string>{"structural_resonance"});
 }
 
+TEST_CASE("structural_resonance: one that rings for longer than the record lasts is suspected") {
+    workshop::machine real;
+    auto file = workshop::described(real);
+    real.mode_mass = real.mass / 4;
+    real.mass -= real.mode_mass;
+    real.mode_frequency = 5;
+    real.mode_damping = 0.003;
+    const auto d = diagnose(file, workshop::as_log(workshop::run(real)));
+    CAPTURE(workshop::said(d));
+    REQUIRE(!d.causes.empty());
+    CHECK(d.causes[0].effect == "structural_resonance");
+    CHECK(d.causes[0].group_probability < 0.5);
+}
+
 TEST_CASE("structural_resonance: led along the motion, a second mass needs its share of the force") {
     const workshop::machine real;
     const auto axis = workshop::described(real).axes.front();

@@ -32,7 +32,7 @@ inline bool outdoes_the_drive(const axis_record& r, const plant_model& found, co
     if (named.effect != "cutting_force" || found.drive.closes()) return false;
     double command = 0, process = 0;
     for (const double u : r.command) command = std::max(command, std::abs(u));
-    for (const double size : found.cutting.sizes()) process = std::max(process, std::abs(size));
+    for (const double size : found.cutting.sizes()) process = std::max(process, size);
     return process > std::abs(found.force_constant) * command;
 }
 
