@@ -47,6 +47,31 @@ std::string milled() {
     }
     return out;
 }
+/// Strokes, some of them faster than 30 mm/s, which a follower does not pass; rows of 10 ms, counts of half a
+/// micrometre, and each row read up to 0.4 ms late.
+std::string limited() {
+    std::mt19937_64 random(9);
+    std::uniform_real_distribution<double> u(0, 1);
+    constexpr double h = 1e-4, limit = 0.03, count = 5e-7;
+    std::string out = "t_s,y_ref_m,y_pos_m\n";
+    double asked = 0, speed = 0, wanted = 0, reached = 0, read = 0;
+    int late = 0;
+    for (int k = 0; k < 600000; ++k) {
+        if (k % 7000 == 0) wanted = (asked > 0.01 ? -1 : asked < -0.01 ? 1 : u(random) - 0.5) * (0.01 + 0.04 * u(random));
+        if (k % 100 == 0) late = static_cast<int>(5 * u(random));
+        speed += std::clamp(wanted - speed, -0.4 * h, 0.4 * h);
+        reached += std::clamp(asked - reached, -limit * h, limit * h);
+        if (k % 100 == late) read = reached;
+        if (k % 100 == 5) {
+            char row[80];
+            std::snprintf(row, sizeof row, "%.4f,%.9f,%.9f\n", (k - 5) * h, asked - 5 * h * speed,
+                          std::round(read / count) * count);
+            out += row;
+        }
+        asked += speed * h;
+    }
+    return out;
+}
 machine_description mill(const std::string& drive, const std::string& count = "1e-4") {
     return read_machine(
         R"({"schema": "quadrant.machine/1", "sample_period_s": 0.1, "axes": {"y": {"drive": {)" + drive +
@@ -207,4 +232,17 @@ TEST_CASE("positions: set-points that have the name of a command are told how to
         refusal_of([&] { check_match(mill(R"("command_delay_s": 0.01)"), read_log(log, "log.csv")); });
     CAPTURE(refusal);
     CHECK(refusal.find("name y_cmd_m y_ref_m") != std::string::npos);
+}
+
+TEST_CASE("positions: beside a limit of the speed, what it is wrong by as it lets go is no step and no scale") {
+    const auto machine = read_machine(
+        R"({"schema": "quadrant.machine/1", "sample_period_s": 0.01, "axes": {"y": {
+            "drive": {"command_delay_s": 0}, "encoder": {"resolution_m": 5e-7}}}})",
+        "machine.json");
+    std::istringstream log(limited());
+    const auto d = diagnose(machine, read_log(log, "log.csv"));
+    CAPTURE(said(d));
+    REQUIRE(!d.causes.empty());
+    CHECK(d.causes.front().effect == "setpoint_rate_limit");
+    CHECK(workshop::claims(d) == std::vector<std::string>{"setpoint_rate_limit"});
 }

@@ -67,3 +67,20 @@ TEST_CASE("a mode that rings for longer than the record lasts is a force at one 
     CHECK_FALSE(detail::rings_beyond(r, mode(45, 0.001)));
     CHECK_FALSE(detail::rings_beyond(r, cause{}));
 }
+
+// A bent rail of 0.3 m was called cogging of 0.16 m at 0.81.
+TEST_CASE("a wave with less than two periods on the travel is any curve") {
+    axis_record r;
+    r.scale.travel = 0.3;
+    plant_model found;
+    found.cogging = {0.16, {5, 1}, {0, 0}};
+    CHECK(detail::repeats_too_seldom(r, found, "cogging"));
+    CHECK_FALSE(detail::repeats_too_seldom(r, found, "force_ripple"));
+    CHECK_FALSE(detail::repeats_too_seldom(r, found, "mass"));
+    found.cogging = {0.16, {1, 5}, {0, 0}}; // the second is the strongest, twice as short
+    CHECK_FALSE(detail::repeats_too_seldom(r, found, "cogging"));
+    found.ripple = {0.149, {1}, {0}};
+    CHECK_FALSE(detail::repeats_too_seldom(r, found, "force_ripple"));
+    found.friction.along = {0.2, {1}, {0}};
+    CHECK(detail::repeats_too_seldom(r, found, "position_dependent_friction"));
+}

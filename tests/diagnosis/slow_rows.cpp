@@ -5,10 +5,12 @@
 #include "claims.hpp"
 
 #include <quadrant/diagnosis/diagnose.hpp>
+#include <quadrant/diagnosis/fit/late_command.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -42,8 +44,10 @@ double asked_at(double t) {
     }
 }
 
-/// A stiff loop in steps of a millisecond; every hundredth is logged.
-std::string record() {
+constexpr int tenth = 100, seventh = 150; ///< of a second, in steps of the loop
+
+/// A stiff loop in steps of a millisecond, of which one in `every` is logged.
+std::string record(int every) {
     std::mt19937_64 random(11);
     std::normal_distribution<double> noise(0, 0.5);
     std::string out = "t_s,q_pos_rad,q_torque_Nm\n";
@@ -52,7 +56,7 @@ std::string record() {
     for (int k = 0; k < 60000; ++k) {
         const double t = k * h;
         const double torque = inertia * (3600 * (asked_at(t) - q) - 100 * v);
-        if (k % 100 == 0) {
+        if (k % every == 0) {
             char row[80];
             std::snprintf(row, sizeof row, "%.6f,%.9f,%.6f\n", t, q, torque + noise(random));
             out += row;
@@ -64,15 +68,19 @@ std::string record() {
 }
 
 /// `axis`: plant and tolerances.
-diagnosis_result diagnosed(const std::string& axis) {
-    const auto machine =
-        read_machine(R"({"schema": "quadrant.machine/1", "sample_period_s": 0.1, "axes": {"q": {)" + axis +
-                         R"(, "encoder": {"resolution_rad": 1e-5}, "actuator": {"command_is": "measured"}}}})",
-                     "joint.json");
-    std::istringstream file(record());
+diagnosis_result diagnosed(const std::string& axis, int every = tenth) {
+    const auto machine = read_machine(
+        fmt::format(R"({{"schema": "quadrant.machine/1", "sample_period_s": {}, "axes": {{"q": {{{},
+                    "encoder": {{"resolution_rad": 1e-5}}, "actuator": {{"command_is": "measured"}}}}}}}})",
+                    every / 1000.0, axis),
+        "joint.json");
+    std::istringstream file(record(every));
     return diagnose(machine, read_log(file, "joint.csv"));
 }
-const std::string without_friction = R"("plant": {"inertia_kg_m2": 8.2})";
+const std::string without_friction = R"("plant": {"inertia_kg_m2": 8.2})",
+                  as_it_is =
+                      R"("plant": {"inertia_kg_m2": 8.2, "viscous_Nm_s_per_rad": 31.5, "coulomb_Nm": 21.2},
+                         "tolerance": {"inertia": 0.02, "viscous": 0.02, "coulomb": 0.02})";
 
 } // namespace
 
@@ -105,9 +113,33 @@ TEST_CASE("diagnose: where rows are slow, Coulomb friction is told beside viscou
 }
 
 TEST_CASE("diagnose: where rows are slow, a joint as described is blamed for nothing") {
-    const auto d =
-        diagnosed(R"("plant": {"inertia_kg_m2": 8.2, "viscous_Nm_s_per_rad": 31.5, "coulomb_Nm": 21.2},
-                     "tolerance": {"inertia": 0.02, "viscous": 0.02, "coulomb": 0.02})");
+    for (const int every : {tenth, seventh}) {
+        CAPTURE(every);
+        const auto d = diagnosed(as_it_is, every);
+        CAPTURE(said(d));
+        for (const cause& c : d.causes) CHECK(c.group_probability < 0.5);
+    }
+}
+
+TEST_CASE("diagnose: a mass that acts as a torque half a row late does is no claim") {
+    const auto d = diagnosed(without_friction, seventh);
     CAPTURE(said(d));
-    for (const cause& c : d.causes) CHECK(c.group_probability < 0.5);
+    REQUIRE(!d.causes.empty());
+    CHECK(d.causes.front().effect == "viscous_friction");
+    for (const cause& c : d.causes)
+        if (c.effect == "mass") CHECK(c.group_probability < 0.5);
+}
+
+TEST_CASE("late command: a measured one that may go to its next row in a line does, where half a row is told") {
+    std::istringstream file(record(seventh));
+    const auto log = read_log(file, "joint.csv").axes.front();
+    plant_description joint;
+    joint.mass_kg = inertia;
+    joint.force_constant_N_per_V = 1;
+    const double rows = seventh / 1000.0;
+    const command_timing t = timing_of_command(log, rows, joint);
+    REQUIRE(!t.sure());
+    REQUIRE(t.of_plant);
+    CHECK(lateness_of_command(log, rows, joint, command_origin::measured) == rows / 2);
+    CHECK(lateness_of_command(log, rows, joint, command_origin::asked) == 0);
 }

@@ -227,6 +227,13 @@ QUADRANT_DIAGNOSIS_DECL void seeker::weigh(const answer& out, finding& f) const 
     if (f.what == term::scale && r_.of().asked && left > law_error * law_error * explained &&
         std::abs(out.best.values[ratio - out.best.of.begin()]) > tolerance_description::unstated)
         known = std::min(known, 0.45);
+    // A limit of the speed lets go between two rows, and what it is wrong by in that moment stays: a step, and
+    // a share of the travel, that is small beside what the limit takes off.
+    if (f.what == term::steps || f.what == term::scale)
+        for (const finding& limit : out.findings)
+            if (limit.what == term::rate &&
+                explained < law_error * law_error * (square(limit.before) - square(limit.after)))
+                known = std::min(known, 0.45);
     // Two waves so near each other that one beats with the other over the travel: which of them is there, or
     // whether one stands for what the other leaves, neither says.
     const bool wave = f.what == term::pitch || f.what == term::cyclic;

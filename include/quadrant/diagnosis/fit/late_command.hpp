@@ -11,11 +11,15 @@ namespace quadrant::inline v0::diagnosis {
 struct command_timing {
     double later =
         0; ///< its column stands later than the described plant's delay lets it act [s]; negative: earlier
-    double acts_after = 0;  ///< from its row to its action; negative: it acts before it was recorded [s]
-    double spread = 0;      ///< standard deviation of both [s]
-    bool of_plant = false;  ///< the regression is of what the command does, not of a loop that answers
-    bool outweighs = false; ///< the shift takes off more than forces that no regression knows leave
+    double acts_after = 0;    ///< from its row to its action; negative: it acts before it was recorded [s]
+    double spread = 0;        ///< standard deviation of both [s]
+    bool of_plant = false;    ///< the regression is of what the command does, not of a loop that answers
+    bool outweighs = false;   ///< the shift takes off more than forces that no regression knows leave
+    bool within_rows = false; ///< the motion is too fast for a loop that answers once a row
     bool sure() const { return of_plant && outweighs && std::abs(later) > 4 * spread; }
+    /// Whether a measured command rather goes to its next row in a line, `half` a row later, than that it is
+    /// held.
+    bool goes_in_a_line(double half) const { return of_plant && within_rows && later > half / 2; }
 };
 QUADRANT_DIAGNOSIS_DECL command_timing timing_of_command(const axis_log& log, double period,
                                                          const plant_description& plant);
@@ -24,8 +28,10 @@ QUADRANT_DIAGNOSIS_DECL command_timing timing_of_command(const axis_log& log, do
 /// earlier; 0: not surely. What acts comes before what it does, so a column that fits the motion better if it
 /// is read earlier was recorded late: filtered, sent one cycle after the position, or taken once in a row
 /// during which a faster loop went on. An asked command that acts late is another matter, `time_delay`, and no
-/// lateness; a measured one acts at once, and what is late then is the reading of the position. Effects that no
-/// regression knows move the answer by no more than half a row on the machines of
+/// lateness; a measured one acts at once, and what is late then is the reading of the position. Where the
+/// motion is faster than a loop that answers once a row could make it, a measured command was not held in
+/// between: unless its time is sure, it goes to its next row in a line, half a row later, where the motion has
+/// that nearer. Effects that no regression knows move the answer by no more than half a row on the machines of
 /// tests/diagnosis/late_command.cpp.
 QUADRANT_DIAGNOSIS_DECL double lateness_of_command(const axis_log& log, double period,
                                                    const plant_description& plant, command_origin command);

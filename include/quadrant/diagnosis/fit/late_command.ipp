@@ -20,16 +20,18 @@ QUADRANT_DIAGNOSIS_DECL command_timing timing_of_command(const axis_log& log, do
                                                          const plant_description& plant) {
     constexpr int most_turns = 8;
     constexpr double near = 0.02, most = 10; // rows
-    const regressed of_motion = regress(log, period, and_lateness::of_motion).lateness;
+    const axis_regression moves = regress(log, period, and_lateness::of_motion);
+    const regressed of_motion = moves.lateness;
+    const command_timing unknown{.within_rows = moves.band_Hz >= detail::widest_band(period)};
     // A row's command is its mean until the next row, half a period behind the reading of that row.
     const double as_described = -0.5 * period - plant.delay_s;
     const double left_as_described =
         regress(read_earlier(log, as_described, period), period, and_lateness::up_to_noise).left_in_time;
     double late = of_motion.sure() ? of_motion.value : 0;
     for (int turn = 0; turn < most_turns; ++turn) { // each takes off nine tenths
-        if (std::abs(late) > most * period) return {};
+        if (std::abs(late) > most * period) return unknown;
         const axis_regression r = regress(read_earlier(log, late, period), period, and_lateness::up_to_noise);
-        if (!std::isfinite(r.lateness.spread)) return {};
+        if (!std::isfinite(r.lateness.spread)) return unknown;
         late += r.lateness.value;
         if (std::abs(r.lateness.value) < near * period)
             // Forces that no regression knows may look like a lateness that takes off less than they are.
@@ -37,14 +39,17 @@ QUADRANT_DIAGNOSIS_DECL command_timing timing_of_command(const axis_log& log, do
                     .acts_after = -0.5 * period - late,
                     .spread = r.lateness.spread,
                     .of_plant = detail::is_of_the_plant(r, plant),
-                    .outweighs = r.left < 0.5 * left_as_described};
+                    .outweighs = r.left < 0.5 * left_as_described,
+                    .within_rows = unknown.within_rows};
     }
-    return {};
+    return unknown;
 }
 
 QUADRANT_DIAGNOSIS_DECL double lateness_of_command(const axis_log& log, double period,
                                                    const plant_description& plant, command_origin command) {
     const command_timing t = timing_of_command(log, period, plant);
+    const double half = period / 2;
+    if (!t.sure() && command == command_origin::measured && t.goes_in_a_line(half)) return half;
     if (!t.sure() || (command == command_origin::asked && t.acts_after > -4 * t.spread)) return 0;
     return t.later;
 }

@@ -39,6 +39,10 @@ namespace detail {
 QUADRANT_DIAGNOSIS_DECL double noise_gain(double band_Hz, double period);
 QUADRANT_DIAGNOSIS_DECL double mean_square(const std::vector<double>& x);
 
+/// The widest band of a regression: a tenth of the rate, which is also as fast as a loop that answers once a
+/// row can be.
+inline double widest_band(double period) { return 0.1 / period; }
+
 /// The band of a regression. Noise in an explaining signal makes its factor too small by the noise's share of
 /// the variance, so the noise of the reading is a hundredth of the acceleration's variance at most. Below that
 /// limit, three times the frequency that holds 98 % of the velocity's power: faster dynamics are not of the

@@ -26,7 +26,7 @@ QUADRANT_DIAGNOSIS_DECL double regression_band(const axis_log& log, double perio
     const auto velocity = [&](double band) {
         return derivative(zero_phase(log.position, band, period), period);
     };
-    double band = 0.1 / period;
+    double band = widest_band(period);
     const auto drowned = [&](double f) {
         return noise * noise * noise_gain(f, period) > share * mean_square(derivative(velocity(f), period));
     };

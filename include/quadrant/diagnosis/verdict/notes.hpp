@@ -51,6 +51,15 @@ inline void note_digits(diagnosis_result& out, const axis_case& c) {
             c.axis.kind));
 }
 
+/// What was left out because the hold-out log speaks against it.
+inline void note_denied(diagnosis_result& out, const axis_case& c) {
+    for (const effect* e : c.denied())
+        out.notes.push_back(fmt::format(
+            "axis {}: {} would take more off this log's gap, but with it the causes predict the hold-out log "
+            "worse than none: it is left out. It may be real in this motion alone.",
+            c.axis.name, e->label.empty() ? e->name : e->label));
+}
+
 /// A controller whose integral is not limited as the file's kind limits it.
 inline void note_limit(diagnosis_result& out, const axis_case& c) {
     if (c.controller && c.controller->limits_otherwise_from)

@@ -106,8 +106,12 @@ inline void columns_in_time::by_motion() {
     }
     const double late = lateness_of_command(log, period, axis.plant, axis.actuator.command_is);
     if (late == 0) return;
+    const bool between = axis.actuator.command_is == command_origin::measured && late == period / 2;
     notes.push_back(
-        late > 0
+        between ? fmt::format("axis {}: the loop that made this motion runs faster than the rows; the measured "
+                              "command is taken to go from each row to the next in a line.",
+                              axis.name)
+        : late > 0
             ? fmt::format(
                   "axis {}: the command stands {:.2g} ms later in the log than {}; it is read as so much "
                   "earlier.",

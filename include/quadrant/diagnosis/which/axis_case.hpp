@@ -34,7 +34,12 @@ private:
     /// is known.
     axis_record record_of(double period, const exclusions& excluded, const progress& tell, held_by how,
                           const axis_case* before, std::optional<tap_reading> tap);
-    std::vector<plant_model> known_; ///< near what the machine does, of that search
+    /// Of several causes that together predict the hold-out log worse than none, those without which the others
+    /// predict it better than none. A weight that was found in one pose of an arm is another in the next, and
+    /// speaks against no friction beside it.
+    void leave_out_what_the_holdout_denies();
+    std::vector<const effect*> denied_{}; ///< left out so
+    std::vector<plant_model> known_;      ///< near what the machine does, of that search
     /// How far apart machines inside the owner's tolerances are on the hold-out log's motion.
     const std::vector<double>& cloud_of_second() const;
     mutable std::vector<double> cloud_of_second_{}; ///< found when it is asked for
@@ -117,6 +122,8 @@ public:
     double worth(const candidate& m) const;
     /// Score on this log below which a model counts little beside the best, whatever the hold-out log says.
     double least_score() const;
+    /// Causes that this log asks for, without which the others predict the hold-out log.
+    std::span<const effect* const> denied() const { return denied_; }
     bool controller_differs() const { return controller && controller->differs; }
     bool command_is_added() const { return controller_differs() && controller->is_added(); }
     bool controller_open() const { return controller_differs() && !controller->mended && !command_is_added(); }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: what is asked of one axis, one question after the other.
 #pragma once
 
 namespace quadrant::inline v0::diagnosis {
@@ -26,10 +27,29 @@ QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const ax
     count_unnamed = coarse() && excluded.contains("encoder_quantization");
     models.begins(tell.part(detail::share_of_record(how), 1));
     follow(models.run());
+    leave_out_what_the_holdout_denies();
     if (!tested_apart() || !record.replayed() || best().effects.empty()) return;
     const auto worth_of = [&](const candidate& m) { return worth(m); };
     if (auto more = models.most_worth(best(), least_score(), worth_of); !search::same(more, best()))
         follow(models.path_to(more));
+}
+
+QUADRANT_DIAGNOSIS_DECL void axis_case::leave_out_what_the_holdout_denies() {
+    if (!tested_apart() || record.replayed()) return;
+    const double machine = second_log(path.front()).force;
+    while (best().effects.size() > 1 && second_log(best()).force > machine && !models.over()) {
+        const effect* denied = nullptr;
+        double least = machine;
+        const auto each = models.without_each(best(), best().effects);
+        for (std::size_t i = 0; i < each.size(); ++i)
+            if (const double left = second_log(each[i]).force; left < least) {
+                least = left;
+                denied = best().effects[i];
+            }
+        if (!denied) return;
+        follow(models.path_to(models.without(best(), denied)));
+        denied_.push_back(denied);
+    }
 }
 
 QUADRANT_DIAGNOSIS_DECL axis_record axis_case::record_of(double period, const exclusions& excluded,

@@ -12,8 +12,8 @@ namespace quadrant::inline v0::diagnosis {
 /// that.
 class axis_floors : public axis_models {
 public:
-    /// Whether a cause is a number of the machine file that ends inside the owner's tolerance: that is
-    /// calibration.
+    /// Whether every number of a cause that the owner has a tolerance for ends inside it, and an angle is as
+    /// described: that is calibration.
     bool is_calibration(const candidate& c, const effect* e) const;
 
     /// White noise of the position as a model sees it [m].
@@ -88,6 +88,8 @@ public:
 protected:
     using axis_models::axis_models;
 
+    /// Whether an angle that has no tolerance is another one than in the file, by more than an unstated one.
+    static bool is_another_angle(const key_value& found, const key_value& described);
     /// Whether every harmonic of a wave ends inside its tolerance, and no other was found.
     bool is_calibration_of_wave(plant_model& fitted, const effect& e) const;
 

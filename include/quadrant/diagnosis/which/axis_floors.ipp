@@ -6,13 +6,24 @@ namespace quadrant::inline v0::diagnosis {
 QUADRANT_DIAGNOSIS_DECL bool axis_floors::is_calibration(const candidate& c, const effect* e) const {
     plant_model fitted = c.fit.plant;
     if (is_wave(*e)) return is_calibration_of_wave(fitted, *e);
-    const auto values = e->read(fitted);
-    for (const parameter& own : calibrated_.fit.parameters)
-        if (!values.empty() && own.key == values.front().key && own.key != "presliding_length_m") {
-            const double x = own.of(fitted);
-            return x >= own.low && x <= own.high;
+    const auto values = e->read(fitted), described = e->read(given_.fit.plant);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const std::string& key = values[i].key;
+        const auto own = std::find_if(calibrated_.fit.parameters.begin(), calibrated_.fit.parameters.end(),
+                                      [&](const parameter& p) { return p.key == key; });
+        if (own != calibrated_.fit.parameters.end()) {
+            const double x = own->of(fitted);
+            if (key == "presliding_length_m" || !(x >= own->low && x <= own->high)) return false;
+        } else if (i == 0 || (key.ends_with("_rad") && is_another_angle(values[i], described[i]))) {
+            return false;
         }
-    return false;
+    }
+    return !values.empty();
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_floors::is_another_angle(const key_value& found, const key_value& described) {
+    const double off = std::remainder(found.values.front() - described.values.front(), 2 * std::numbers::pi);
+    return std::abs(off) > tolerance_description::unstated;
 }
 
 QUADRANT_DIAGNOSIS_DECL bool axis_floors::is_calibration_of_wave(plant_model& fitted, const effect& e) const {

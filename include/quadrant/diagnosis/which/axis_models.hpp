@@ -35,6 +35,10 @@ public:
     /// Its rms [N].
     double held_out_force(const candidate& c) const;
 
+    /// The same as the described mass would feel it. What models leave are accelerations: each times its own
+    /// mass, the lighter of two would leave less of the same.
+    double held_out_force_of_described_mass(const candidate& c) const;
+
     /// The segment that holds more than half of what a model leaves, among four or more: something happened in
     /// it that the rest of the record does not show. None: there is no such segment.
     std::optional<std::size_t> odd_segment(const candidate& c) const;

@@ -83,6 +83,11 @@ QUADRANT_DIAGNOSIS_DECL double axis_models::held_out_force(const candidate& c) c
     return **c.held_out_force;
 }
 
+QUADRANT_DIAGNOSIS_DECL double axis_models::held_out_force_of_described_mass(const candidate& c) const {
+    const double lighter = given_.fit.plant.mass / c.fit.plant.mass;
+    return held_out_force(c) * (record_.replayed() ? 1 : lighter); // what a drive makes otherwise is a force
+}
+
 QUADRANT_DIAGNOSIS_DECL double axis_models::force_without(const candidate& whole, const effect& e) const {
     candidate c;
     c.fit.plant = plant_without(whole, e);

@@ -24,12 +24,13 @@ inline bool may_be_absent(const candidate& best, const effect& e, const scoring&
 inline bool is_no_claim(const axis_case& c, const effect& e, const cause& named, bool of_laws) {
     // An error of a law of friction is a force on the axis: it has no part in the command or the reading.
     const bool on_axis = e.joins != joint::command && e.joins != joint::reading;
-    return (on_axis && answers_between_rows(c.axis, c.log, c.record.period)) ||
+    return (on_axis && (answers_between_rows(c.axis, c.log, c.record.period) || may_act_between_rows(c, e))) ||
            (of_laws && on_axis && may_be_friction(c, e)) || c.is_error_of_its_law(e) ||
            may_be_inside_its_tolerance(c, named.parameters) || drowns_in_the_rest(c, e) ||
            lies_beyond(named, c.best()) || late_velocity(c, named) > 0 ||
-           repeats_with_the_motion(c.record, named) || rings_beyond(c.record, named) ||
+           repeats_with_the_motion(c.record, named) || (!c.at_floor() && rings_beyond(c.record, named)) ||
            outdoes_the_drive(c.record, c.best().fit.plant, named) ||
+           repeats_too_seldom(c.record, c.best().fit.plant, e.name) || is_lag_within_a_row(c, named) ||
            std::any_of(e.ends_inside.begin(), e.ends_inside.end(),
                        [&](std::string_view key) { return !key.empty() && c.best().ends_at_a_bound(key); });
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 namespace quadrant::inline v0::diagnosis::detail {
 
@@ -38,7 +39,7 @@ inline bool outdoes_the_drive(const axis_record& r, const plant_model& found, co
 
 /// Whether a mode rings for longer than the record lasts: its ring falls to 1/e after the end of the record.
 /// Then it is a force at one frequency, such as a harmonic of the motion, which friction that is not linear in
-/// speed makes too.
+/// speed makes too. A mode beside which nothing else is left is not such a harmonic.
 inline bool rings_beyond(const axis_record& r, const cause& named) {
     double frequency = 0, damping = 0;
     for (const parameter_estimate& p : named.parameters) {
@@ -47,6 +48,19 @@ inline bool rings_beyond(const axis_record& r, const cause& named) {
     }
     const double lasts = static_cast<double>(r.position.size()) * r.period;
     return frequency > 0 && 2 * std::numbers::pi * frequency * damping * lasts < 1;
+}
+
+/// Whether the strongest harmonic of a wave along the travel has less than two periods there: any curve looks
+/// like that, the bend of a rail or of a cable chain among them.
+inline bool repeats_too_seldom(const axis_record& r, const plant_model& found, std::string_view effect) {
+    const harmonics* wave = effect == "cogging"                       ? &found.cogging
+                            : effect == "force_ripple"                ? &found.ripple
+                            : effect == "position_dependent_friction" ? &found.friction.along
+                                                                      : nullptr;
+    if (!wave || wave->count == 0) return false;
+    const auto sizes = wave->sizes();
+    const auto strongest = std::max_element(sizes.begin(), sizes.end()) - sizes.begin() + 1;
+    return 2 * wave->period / static_cast<double>(strongest) > r.scale.travel;
 }
 
 } // namespace quadrant::inline v0::diagnosis::detail

@@ -139,7 +139,8 @@ inline std::vector<rival> in_its_place(const axis_case& c, std::size_t which, co
 class left_by_names {
 public:
     left_by_names(const axis_case& c, std::size_t which, const candidate& without)
-        : case_(c), own_(*c.best().effects[which]), energy_(square(c.models.held_out_force(c.best()))),
+        : case_(c), own_(*c.best().effects[which]),
+          energy_(square(c.models.held_out_force_of_described_mass(c.best()))),
           least_(without.total + c.limits.margin), explained_(square(law_error * explained_by(c, which))),
           by_speed_(of_one_speed(c.record) ? square(one_speed * explained_by(c, which)) : 0) {
         if (!c.settled) unexplained_ = std::max(0.0, energy_ - square(c.floor_force()));
@@ -176,7 +177,7 @@ public:
         if (within && r.model.penalty < best.penalty && !(excess(r) > 0))
             r.weight = std::max(r.weight, commoner * first.weight);
         if (pays && unexplained_ > 0 && by_force(r) && commoner < 1 && r.model.penalty > best.penalty &&
-            square(case_.models.held_out_force(r.model)) >= energy_)
+            square(case_.models.held_out_force_of_described_mass(r.model)) >= energy_)
             r.weight = std::min(r.weight, commoner * first.weight);
         // Two names of one model whose difference is small beside what both leave: the commoner one is
         // likelier, whichever was found first.
@@ -205,14 +206,15 @@ private:
                2 * square(along_motion(r.model)) < square(along_);
     }
     double excess(const rival& r) const {
-        return std::max(0.0, square(case_.models.held_out_force(r.model)) - energy_);
+        return std::max(0.0, square(case_.models.held_out_force_of_described_mass(r.model)) - energy_);
     }
     double excess_on_second(const candidate& m) const {
         if (!case_.tested_apart() || !case_.record.replayed() || !(unexplained_there_ > 0)) return 0;
         return std::max(0.0, square(case_.second_log(m).force) - there_) / unexplained_there_;
     }
     double excess_of_own(const candidate& m) const {
-        const double here = std::max(0.0, energy_ - square(case_.models.held_out_force(m))) / unexplained_;
+        const double here =
+            std::max(0.0, energy_ - square(case_.models.held_out_force_of_described_mass(m))) / unexplained_;
         if (!case_.tested_apart() || !(unexplained_there_ > 0)) return here;
         return here + std::max(0.0, there_ - square(case_.second_log(m).force)) / unexplained_there_;
     }
