@@ -57,7 +57,8 @@ std::string limited() {
     double asked = 0, speed = 0, wanted = 0, reached = 0, read = 0;
     int late = 0;
     for (int k = 0; k < 600000; ++k) {
-        if (k % 7000 == 0) wanted = (asked > 0.01 ? -1 : asked < -0.01 ? 1 : u(random) - 0.5) * (0.01 + 0.04 * u(random));
+        if (k % 7000 == 0)
+            wanted = (asked > 0.01 ? -1 : asked < -0.01 ? 1 : u(random) - 0.5) * (0.01 + 0.04 * u(random));
         if (k % 100 == 0) late = static_cast<int>(5 * u(random));
         speed += std::clamp(wanted - speed, -0.4 * h, 0.4 * h);
         reached += std::clamp(asked - reached, -limit * h, limit * h);

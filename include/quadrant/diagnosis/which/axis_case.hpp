@@ -11,6 +11,7 @@
 #include "search.hpp"
 #include "stages.hpp"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 

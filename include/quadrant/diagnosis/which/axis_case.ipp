@@ -38,17 +38,12 @@ QUADRANT_DIAGNOSIS_DECL void axis_case::leave_out_what_the_holdout_denies() {
     if (!tested_apart() || record.replayed()) return;
     const double machine = second_log(path.front()).force;
     while (best().effects.size() > 1 && second_log(best()).force > machine && !models.over()) {
-        const effect* denied = nullptr;
-        double least = machine;
         const auto each = models.without_each(best(), best().effects);
-        for (std::size_t i = 0; i < each.size(); ++i)
-            if (const double left = second_log(each[i]).force; left < least) {
-                least = left;
-                denied = best().effects[i];
-            }
-        if (!denied) return;
-        follow(models.path_to(models.without(best(), denied)));
-        denied_.push_back(denied);
+        const auto left = [this](const candidate& m) { return second_log(m).force; };
+        const auto least = std::ranges::min_element(each, {}, left);
+        if (!(left(*least) < machine)) return;
+        denied_.push_back(best().effects[static_cast<std::size_t>(least - each.begin())]);
+        follow(models.path_to(*least));
     }
 }
 
