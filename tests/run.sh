@@ -3,7 +3,7 @@
 # usage: tests/run.sh          everything that a change must pass
 #        tests/run.sh all      and a second sanitizer (threads), clang-tidy, longer fuzzing, every case of every test but "long"
 #        tests/run.sh long     before a release: a soak of 1e9 samples, each file compiled alone (the tests of the label "long")
-#        tests/run.sh PHASE... of: release sanitize thread fuzz callgrind tidy long
+#        tests/run.sh PHASE... of: release sanitize thread fuzz tidy long
 # Environment: QUADRANT_SHARED  folder with gap/ and data/ (default: shared beside the repository)
 #              QUADRANT_BUILD   where to build (default: build in the repository)
 # The last line is "N passed, N failed, N skipped"; the exit code is 1 when something failed.
@@ -23,16 +23,14 @@ fuzz_seconds=20          # of processor time, all fuzzers together
 tests=                   # CMake's QUADRANT_TESTS
 optimised=clang          # the preset of the phase release: a test compiles in half of the time that g++ takes
 large_pages=glibc.malloc.hugetlb=1 # of the memory of Clang: a sixth of its time
-compilers=g++            # whose instructions are counted: an integrator's
 together=13              # CMake's QUADRANT_TOGETHER: half of the processor time, and up to 3.1 GB a compiler
 
 case "${1-}" in
-'') set -- release sanitize fuzz callgrind ;;
+'') set -- release sanitize fuzz ;;
 all)
     [ $# = 1 ] || { echo "all stands alone"; exit 2; }
     fuzz_seconds=60 tests=all optimised=release
-    compilers='g++ clang++'
-    set -- release sanitize thread fuzz callgrind tidy
+    set -- release sanitize thread fuzz tidy
     ;;
 esac
 for phase; do [ "$phase" != long ] || tests=all optimised=release; done
@@ -121,7 +119,7 @@ run_ctest() { # PRESET CTEST-ARGUMENTS...
     printf '(all of it: %s)\n' "$log"
 }
 
-release() { # every test but "long", what must not compile with both compilers, the consumers by g++, the page in a browser
+release() { # every test but "long": what must not compile and the consumers by g++, instruction counts, pages in a browser
     build_preset $optimised all && run_ctest $optimised -LE long
 }
 long() { # what takes an hour, and a change hardly breaks
@@ -175,21 +173,6 @@ fuzz() { # libFuzzer on the file readers; the first byte of an input chooses the
         fi
     done
 }
-callgrind() { # the typed axis loop needs no more instructions than the hand-written one; the compilers side by side
-    installed
-    for compiler in $compilers; do
-        { QUADRANT_BUILD="$build" COMPILERS=$compiler sh benchmarks/callgrind.sh; echo $? >"$logs/callgrind-$compiler.code"; } \
-            >"$logs/callgrind-$compiler.txt" 2>&1 &
-    done
-    wait
-    for compiler in $compilers; do
-        case $(cat "$logs/callgrind-$compiler.code") in
-        0) cat "$logs/callgrind-$compiler.txt"; count 1 0 0 ;;
-        77) left_out "$(cat "$logs/callgrind-$compiler.txt")" ;;
-        *) broken "callgrind of $compiler" "$logs/callgrind-$compiler.txt" ;;
-        esac
-    done
-}
 tidy() { # clang-tidy over every header
     installed
     build_preset tidy quadrant_headers quadrant_tidy && count 1 0 0
@@ -218,7 +201,7 @@ packages=$!
 
 for phase; do
     case $phase in
-    release | sanitize | thread | fuzz | callgrind | tidy | long) ;;
+    release | sanitize | thread | fuzz | tidy | long) ;;
     *) echo "no phase $phase"; exit 2 ;;
     esac
     began=$(date +%s) p=$passed f=$failed s=$skipped

@@ -203,7 +203,8 @@ machine_log behind_noisy_sensor(double white) {
 
 } // namespace
 
-TEST_CASE("diagnose: the noise of a torque sensor is no weak motor, and no friction that grows with the load") {
+TEST_CASE("diagnose: the noise of a torque sensor is no weak motor, and no friction that grows with the load" *
+          doctest::test_suite("all")) {
     auto machine = read_machine(
         std::string_view(R"({"schema": "quadrant.machine/1", "sample_period_s": 0.001, "axes": {"q": {
         "plant": {"inertia_kg_m2": 1.2e-4, "viscous_Nm_s_per_rad": 7e-5},

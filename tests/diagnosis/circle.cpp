@@ -47,7 +47,8 @@ TEST_CASE("ball_bar: noise and quantization alone are blamed on nothing") {
     coarse.resolution = 2e-6;
     CHECK(found(ball_bar(all_runs(coarse))) == "");
 }
-TEST_CASE("ball_bar: every error of geometry alone is the only one named, with its sign and size") {
+TEST_CASE("ball_bar: every error of geometry alone is the only one named, with its sign and size" *
+          doctest::test_suite("all")) {
     struct row {
         const char* name;
         double truth;
@@ -180,7 +181,8 @@ TEST_CASE("ball_bar: three errors at once are all named, each with its size") {
     for (const auto& e : r.errors) sum += e.share;
     CHECK(near(sum, 1, 1e-9));
 }
-TEST_CASE("ball_bar: what is three times the detection limit is found, what is a third of it is not") {
+TEST_CASE("ball_bar: what is three times the detection limit is found, what is a third of it is not" *
+          doctest::test_suite("all")) {
     machine m;
     const double limit = find(ball_bar(all_runs(m)), "squareness")->limit;
     CHECK(limit > 1e-8);

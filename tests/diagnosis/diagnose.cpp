@@ -333,7 +333,8 @@ TEST_CASE("diagnose: one stroke of under a second names a cause that it shows, a
     }));
 }
 
-TEST_CASE("diagnose: of a record that goes back once, no piece that is left out takes a direction with it") {
+TEST_CASE("diagnose: of a record that goes back once, no piece that is left out takes a direction with it" *
+          doctest::test_suite("all")) {
     constexpr double there_and_back = 1.85; // of motion() [s]
     machine real;
     real.coulomb = 0;

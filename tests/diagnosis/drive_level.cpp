@@ -79,7 +79,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "replay: a limit that acts on the machine as described is no gap, and without it in the file it is one") {
+    "replay: a limit that acts on the machine as described is no gap, and without it in the file it is one" *
+    doctest::test_suite("all")) {
     constexpr double period = 1e-3, limit = 45;
     auto m = axis;
     m.force_limit = limit;
@@ -100,7 +101,8 @@ TEST_CASE("replay: under a limit that is too low for the motion the level does n
     CHECK(largest(replayed(described(40, 1000, period), log, limit)) < 3 * limit);
 }
 
-TEST_CASE("position drive: another gain of the position loop is found beside a described limit") {
+TEST_CASE("position drive: another gain of the position loop is found beside a described limit" *
+          doctest::test_suite("all")) {
     constexpr double period = 2e-3;
     const auto d = diagnosed(described(62, 120, period), recorded(axis, period));
     REQUIRE(!d.causes.empty());

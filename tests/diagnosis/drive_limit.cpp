@@ -10,8 +10,8 @@
 
 using namespace quadrant::diagnosis;
 
-TEST_CASE(
-    "velocity drive: a limit is found where its law, whose integral winds up, asks for a multiple of it") {
+TEST_CASE("velocity drive: a limit is found where its law, whose integral winds up, asks for a multiple of it" *
+          doctest::test_suite("all")) {
     constexpr double bandwidth = 2 * std::numbers::pi * 40; // of the velocity loop [rad/s]
     const drive_simulator::machine limited{.coulomb = 30,
                                            .viscous = 60,

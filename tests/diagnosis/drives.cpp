@@ -161,7 +161,8 @@ TEST_CASE(
         CHECK(ratio() == doctest::Approx(5).epsilon(0.01));
     }
 }
-TEST_CASE("velocity drive with a measured current: what the tolerances of its gains excuse is no gap") {
+TEST_CASE("velocity drive with a measured current: what the tolerances of its gains excuse is no gap" *
+          doctest::test_suite("all")) {
     auto m = pi_drive;
     m.force_of_current = 20;
     records r = recorded(takes::volts, m);
@@ -418,7 +419,8 @@ TEST_CASE("forecast: a velocity drive without a described controller has none, w
     REQUIRE(f.notes.size() == 1);
     CHECK(f.notes[0].find("without a controller") != std::string::npos);
 }
-TEST_CASE("velocity drive: one that switches itself off for half a second is found, with the times") {
+TEST_CASE("velocity drive: one that switches itself off for half a second is found, with the times" *
+          doctest::test_suite("all")) {
     auto m = p_drive;
     m.off_from = 4.3;
     m.off_until = 4.8;

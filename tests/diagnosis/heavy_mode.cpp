@@ -93,7 +93,8 @@ TEST_CASE("structural_resonance: one that rings for longer than the record lasts
     CHECK(workshop::claims(d) == std::vector<std::string>{"structural_resonance"});
 }
 
-TEST_CASE("structural_resonance: beside a force without a name such a one is suspected") {
+TEST_CASE("structural_resonance: beside a force without a name such a one is suspected" *
+          doctest::test_suite("all")) {
     const auto d = ringing_beyond_its_record([](double, double, double t) {
         return 40 * std::sin(2 * std::numbers::pi * 1.7 * t + 3 * std::sin(2 * std::numbers::pi * 0.31 * t));
     });

@@ -104,7 +104,8 @@ TEST_CASE("late command: one that was sent 2.3 rows after the position is read a
 }
 TEST_CASE(
     "late command: a machine whose command was recorded rows late has the causes that it has in time, and the "
-    "report says so") {
+    "report says so" *
+    doctest::test_suite("all")) {
     const auto diagnosed_late = [](const workshop::machine& real, const machine_description& file, long rows) {
         return diagnosed_as_recorded(
             real, file, [&](auto& command) { workshop::stand_later(command, rows); }, "the command stands");
@@ -184,7 +185,8 @@ TEST_CASE("late command: a machine whose measured command stands behind a low-pa
 }
 TEST_CASE(
     "late command: no effect of the workshop's machines makes a command late by more than half a row, hides "
-    "three rows, or makes a low-pass of them") {
+    "three rows, or makes a low-pass of them" *
+    doctest::test_suite("all")) {
     workshop::machine as_described;
     as_described.delay = 0;
     const plant_description file = workshop::described(as_described).axes[0].plant;

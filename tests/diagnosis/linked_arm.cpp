@@ -100,7 +100,8 @@ TEST_CASE("linked arm: two links that move each other are told with the numbers 
     CHECK(near(number_behind(inner, "own angle and "), 1.3, 0.2));
     CHECK(near(number_behind(outer, "own angle and "), 1.3, 0.1));
 }
-TEST_CASE("linked arm: two pendulums that do not touch are none, whatever friction and weight they have") {
+TEST_CASE("linked arm: two pendulums that do not touch are none, whatever friction and weight they have" *
+          doctest::test_suite("all")) {
     const auto d = diagnosed({.coupling = 0});
     CHECK(told(d, "q1").empty());
     CHECK(told(d, "q2").empty());

@@ -133,7 +133,8 @@ TEST_CASE("set-point loss: a drive that receives everything has lost nothing, wh
     CHECK(d.causes.empty());
 }
 
-TEST_CASE("command delay: beyond its tolerance it is fitted to the end, and no friction stands for it") {
+TEST_CASE("command delay: beyond its tolerance it is fitted to the end, and no friction stands for it" *
+          doctest::test_suite("all")) {
     auto m = real;
     m.mass = 1500;
     m.coulomb = 200;

@@ -86,7 +86,8 @@ TEST_CASE("rivals: a group is headed by a name whose numbers were found, not by 
     other.same = false;
     CHECK(head({named(stribeck_friction, 1, 0.1), other}) == "stribeck_friction");
 }
-TEST_CASE("rivals: a heavy joint of a weak motor, which follows no command, stands for no friction") {
+TEST_CASE("rivals: a heavy joint of a weak motor, which follows no command, stands for no friction" *
+          doctest::test_suite("all")) {
     const auto machine = read_machine(
         std::string_view(R"({"schema": "quadrant.machine/1", "sample_period_s": 0.01, "axes": {"q": {
         "plant": {"inertia_kg_m2": 16, "torque_constant_Nm_per_A": 10},

@@ -1,17 +1,15 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSL-1.0
-# usage: reference.sh OUT [comments]
+# usage: reference.sh OUT
 #                             Doxygen's reference of every public entity, as OUT/html/index.html; any warning is an error, and so
 #                             is a public struct, class, function, type, constant or concept that no comment explains. What stands in a
-#                             namespace detail is not public; a literal's name is its unit; members are not asked for. With `comments` that alone is looked at, and no page is written.
+#                             namespace detail is not public; a literal's name is its unit; members are not asked for.
 set -u
 command -v doxygen >/dev/null || { echo 'SKIPPED: docs.reference: no doxygen (apt-get install doxygen)'; exit 77; }
 mkdir -p "${1:?usage: reference.sh OUT}" && out=$(cd "$1" && pwd) || exit 1
 cd "$(dirname "$0")/../.." || exit 1
-if [ "${2-}" != comments ]; then
-    rm -rf "$out/html"
-    { cat docs/Doxyfile && printf 'OUTPUT_DIRECTORY = "%s"\n' "$out"; } | doxygen - || { echo "doxygen: exit code $?"; exit 1; }
-fi
+rm -rf "$out/html"
+{ cat docs/Doxyfile && printf 'OUTPUT_DIRECTORY = "%s"\n' "$out"; } | doxygen - || { echo "doxygen: exit code $?"; exit 1; }
 
 # A second time over the headers, without pages: with EXTRACT_ALL, which makes the pages complete, Doxygen never misses a comment.
 { cat docs/Doxyfile && printf '%s\n' 'INPUT = include/quadrant' 'EXTRACT_ALL = NO' 'GENERATE_HTML = NO' 'WARN_AS_ERROR = NO' \
@@ -24,7 +22,6 @@ says() { # PAGE TEXT, as it stands in the comment
     [ -s "$out/html/$1" ] || { wrong "no page $1"; return; }
     sed 's/<[^>]*>//g; s/&lt;/</g; s/&gt;/>/g; s/&quot;/"/g; s/&amp;/\&/g' "$out/html/$1" | grep -qF -- "$2" || wrong "$1 does not say: $2"
 }
-if [ "${2-}" != comments ]; then
 says index.html 'it says why a machine does not do what its simulation predicts'
 says classquadrant_1_1notch.html 'H(s) = (s^2 + w^2) / (s^2 + width w s + w^2), bilinear'
 says classquadrant_1_1notch.html "jump = |b0' - b0| |x[k] - x[k-1]|"
@@ -37,15 +34,10 @@ says namespacequadrant_1_1diagnosis.html 'Writes the causes of a diagnosis that 
 grep -q '<pre class="fragment">H(s) = ' "$out/html/classquadrant_1_1notch.html" || wrong 'the equation of notch is no line of its own'
 grep -lE '^ *///' "$out"/html/*.html && wrong 'marks of comments in the text'
 ls "$out/html" | grep -m 1 -E '_1_1detail(_1_1.*|-members)?\.html' && wrong 'pages of what is inside'
-fi
 sed -n 's/^.*\(include\/quadrant\/.*\): warning: \(Compound\|Member\) \(.*\) is not documented\.$/\1: \2 \3/p' "$out/undocumented.txt" |
     grep -E ': Compound | of (namespace|file) ' | grep -v 'operator""' >"$out/missing.txt"
 grep -q 'is not documented' "$out/undocumented.txt" || wrong 'no list of what is not documented'
 [ ! -s "$out/missing.txt" ] || wrong "no comment on $(cat "$out/missing.txt")"
-if [ "${2-}" = comments ]; then
-    [ $failed = 0 ] && echo "every public entity of include/quadrant has a comment"
-    exit $failed
-fi
 for page in "$out"/html/concept*_*.html; do
     grep -q 'Detailed Description' "$page" || wrong "no comment on ${page##*/}"
 done

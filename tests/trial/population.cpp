@@ -138,7 +138,8 @@ TEST_CASE("plan: logs that cannot show an effect do not hold it") {
         for (const std::string& e : p.effects) CHECK(e != "controller_mismatch");
 }
 TEST_CASE(
-    "population: machines of every drive are read without complaint, with the columns that their drive takes") {
+    "population: machines of every drive are read without complaint, with the columns that their drive takes" *
+    doctest::test_suite("all")) {
     for (const population of :
          {population::velocity_p, population::velocity_pi, population::position, population::position_servo}) {
         CAPTURE(populations[static_cast<std::size_t>(of)]);
@@ -160,7 +161,8 @@ TEST_CASE(
 
 TEST_CASE(
     "population: behind a drive with loops of its own the current is logged with its force constant, and a "
-    "wrong constant shows in it") {
+    "wrong constant shows in it" *
+    doctest::test_suite("all")) {
     using quadrant::diagnosis::drive_kind;
     const auto holds = [](const auto& list) {
         return std::any_of(list.begin(), list.end(), [](const auto* e) { return e->name == "force_constant"; });
