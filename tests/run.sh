@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSL-1.0
 # usage: tests/run.sh          everything that a change must pass
 #        tests/run.sh all      and a second sanitizer (threads), clang-tidy, longer fuzzing, every case of every test but "long"
-#        tests/run.sh long     before a release: a soak of 1e9 samples, each file compiled alone (the tests of the label "long")
+#        tests/run.sh long     before a release: all by g++, a soak of 1e9 samples, each file compiled alone (the label "long")
 #        tests/run.sh PHASE... of: release sanitize thread fuzz tidy long
 # Environment: QUADRANT_SHARED  folder with gap/ and data/ (default: shared beside the repository)
 #              QUADRANT_BUILD   where to build (default: build in the repository)
@@ -29,7 +29,7 @@ case "${1-}" in
 '') set -- release sanitize fuzz ;;
 all)
     [ $# = 1 ] || { echo "all stands alone"; exit 2; }
-    fuzz_seconds=60 tests=all optimised=release
+    fuzz_seconds=60 tests=all
     set -- release sanitize thread fuzz tidy
     ;;
 esac
@@ -122,8 +122,8 @@ run_ctest() { # PRESET CTEST-ARGUMENTS...
 release() { # every test but "long": what must not compile and the consumers by g++, instruction counts, pages in a browser
     build_preset $optimised all && run_ctest $optimised -LE long
 }
-long() { # what takes an hour, and a change hardly breaks
-    build_preset $optimised all && run_ctest $optimised -L long
+long() { # what takes an hour, and a change hardly breaks; and the test executables as g++ compiles them
+    build_preset $optimised all && run_ctest $optimised -L long && run_ctest $optimised -R '^unit\.'
 }
 sanitize() { # Clang, address and undefined-behaviour sanitizers: the test executables, and the fuzzer beside them
     build_preset sanitize unit_tests fuzz && run_ctest sanitize -R '^unit\.'
