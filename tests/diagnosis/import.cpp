@@ -340,6 +340,7 @@ TEST_CASE("import: columns with our names need no map, whatever their units") {
     CHECK(q.find(signal_role::torque)->si == "Nm");
     CHECK(q.find(signal_role::enabled));
     CHECK(refusal_of([] { map_of_header("a,b\n1,2\n", "in"); }).starts_with("in:1:1: no column t_s"));
+    CHECK(refusal_of([] { map_of_header("a,b\n1,2\n", "in"); }).ends_with("; there are a, b"));
     CHECK(refusal_of([] {
               map_of_header("t_s,b\n1,2\n", "in");
           }).starts_with("in:1:1: no column such as x_pos_m"));

@@ -12,7 +12,7 @@ import tempfile
 import zlib
 
 DOUBLE, SINGLE, INT16 = (6, 9, "d"), (7, 7, "f"), (10, 3, "h")  # class of the variable, type of its numbers, struct's letter
-CHAR, STRUCT = 4, 2
+CELL, STRUCT, CHAR = 1, 2, 4
 
 
 def element(order, kind, data, small=False):
@@ -33,10 +33,29 @@ def variable(name, columns, as_=DOUBLE, order="<", flags=0, row=False):
     return element(order, 14, b"".join(parts))
 
 
+def lying(name, rows):
+    """A matrix whose rows are the signals."""
+    numbers = [v for column in zip(*rows) for v in column]
+    parts = [element("<", 6, struct.pack("<II", 6, 0)), element("<", 5, struct.pack("<ii", len(rows), len(rows[0]))),
+             element("<", 1, name.encode()), element("<", 9, struct.pack(f"<{len(numbers)}d", *numbers))]
+    return element("<", 14, b"".join(parts))
+
+
 def text_variable(name, kind=CHAR):
     parts = [element("<", 6, struct.pack("<II", kind, 0)), element("<", 5, struct.pack("<ii", 1, 2)), element("<", 1, name.encode()),
              element("<", 4, "ab".encode("utf-16-le"))]
     return element("<", 14, b"".join(parts))
+
+
+def holding(name, parts, fields=(), shape=(1, 1), length=None):
+    """A structure with these fields, or without any a cell, of one element or an array of them; its parts one after the other."""
+    head = [element("<", 6, struct.pack("<II", STRUCT if fields else CELL, 0)), element("<", 5, struct.pack("<ii", *shape)),
+            element("<", 1, name.encode())]
+    if fields:
+        longest = max(map(len, fields)) + 1 if length is None else length
+        head += [element("<", 5, struct.pack("<i", longest), small=True),
+                 element("<", 1, b"".join(f.encode().ljust(longest, b"\0") for f in fields))]
+    return element("<", 14, b"".join(head + list(parts)))
 
 
 def object_variable(name):
@@ -103,6 +122,20 @@ def main(program):
         columns = out.read_text().splitlines()[0] if out.exists() else ""
         expect(done.returncode == 0 and columns == "t_s,x_ref_m,x_pos_m,x_cmd_V", f"a matrix and integers through a map {done.stderr.strip()}")
 
+        # What a structure holds, as Simulink saves its scopes; a matrix that lies on its side, as "To File" writes it; a cell.
+        scope = holding("signals", [variable("", [ref]), text_variable(""), variable("", [pos]), text_variable("")], ("values", "label"), (1, 2))
+        named = ["rec.time", "rec.signals_1.values", "rec.signals_2.values", "rec.u"]
+        for what, columns, contents in (
+                ("a structure with time", named, mat([holding("rec", [variable("", [t]), scope, element("<", 14, b""), variable("", [u])],
+                                                              ("time", "signals", "empty", "u"))], packed=True)),
+                ("a matrix on its side", [f"ans_{k}" for k in range(1, 5)], mat([lying("ans", (t, ref, pos, u))])),
+                ("a cell", [f"log_{k}" for k in range(1, 5)], mat([holding("log", [variable("", [v]) for v in (t, ref, pos, u)], shape=(4, 1))]))):
+            told.write_text("""{"schema": "quadrant.import/1", "header": 1, "time": {"column": "%s", "unit": "s"}, "axes": {"x": {
+                "reference": {"column": "%s", "unit": "m"}, "position": {"column": "%s", "unit": "m"},
+                "command": {"column": "%s", "unit": "V"}}}}""" % tuple(columns))
+            done = run(contents, "--map", str(told))
+            expect(done.returncode == 0 and out.read_text() == expected, f"{what}: as from CSV {done.stderr.strip()}")
+
         # A file holds more than the log: what the map does not name may be of any length.
         beside = [variable("drive", [[7.0] * 900]), variable("short", [[1.0, 2.0]]), *native]
         told.write_text("""{"schema": "quadrant.import/1", "header": 1, "time": {"column": "t_s", "unit": "s"}, "axes": {"x": {
@@ -122,6 +155,9 @@ def main(program):
         broken[-40] ^= 0x55
         wrong_size = bytearray(whole)
         wrong_size[first + 24 + 8:first + 24 + 12] = struct.pack("<i", 399)  # the first of the dimensions of t_s
+        deep = variable("", [t])
+        for _ in range(17):
+            deep = holding("", [deep], ("a",))
         complex_ = mat([variable("t_s", [t], flags=0x0800)])
         for name, contents, words in (
                 ("cut short", whole[:-100], f"byte {len(whole) - len(record()[-1])}: an element of"),
@@ -137,7 +173,13 @@ def main(program):
                 ("a bomb of zeros", whole[:128] + element("<", 15, zlib.compress(bytes(257 << 20))), "its compressed variables hold more than 256 MiB"),
                 ("other lengths", mat([variable("t_s", [t]), variable("x_ref_m", [ref]), variable("x_pos_m", [pos[:-1]])]),
                  ":401:27: x_pos_m has no more rows, t_s goes on"),
-                ("only texts", mat([text_variable("note"), text_variable("run", STRUCT)]), "holds no vector of numbers"),
+                ("only texts", mat([text_variable("note"), holding("run", [text_variable("")], ("who",))]), "holds no vector of numbers"),
+                ("structures without end", mat([holding("s", [deep], ("a",))]), "more than 16 structures in one another"),
+                ("names without a length", mat([holding("s", [variable("", [t])], ("a",), length=0)]),
+                 "s: the length of the names of its fields is no number"),
+                ("a part that is none", mat([holding("s", [element("<", 9, bytes(16))], ("a",))]), "s.a is no variable"),
+                ("a part beyond its structure", mat([holding("s", [variable("", [t])[:-8]], ("a",)), variable("t_s", [t])]),
+                 "s: holds more data than its size allows"),
                 ("level 7.3", mat([], text=b"MATLAB 7.3 MAT-file, Platform: GLNXA64", version=0x0200), "save it in MATLAB with save(..., '-v7')"),
                 ("another version", mat([], version=0x0300), "byte 124: version 0x0300")):
             done = run(contents)
@@ -148,6 +190,6 @@ def main(program):
 
 if __name__ == "__main__":
     if sys.argv[1] == "--write":  # one that is right, to standard output: a seed for the fuzzer
-        sys.stdout.buffer.write(mat(record(), packed=True))
+        sys.stdout.buffer.write(mat([*record(), holding("s", [variable("", [[1.0, 2.0]])], ("a",))], packed=True))
         sys.exit(0)
     sys.exit(main(sys.argv[1]))

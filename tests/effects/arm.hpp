@@ -15,6 +15,9 @@ struct arm {
     double gravity = 0, phase = 0; ///< torque -gravity sin(q - phase)
     double load_friction = 0;      ///< level's growth with what the gear carries
     double constant = 0, spring = 0;
+    double curve = 0;              ///< torque -curve q^2
+    double cogging = 0, pitch = 0; ///< the first of five harmonics, each 0.6 times that before
+    double rumble = 0;             ///< rms of a torque without a cause, forgotten in 10 ms
     double low = -1.4, high = 1.4; ///< angles between which it moves
 };
 
@@ -50,7 +53,8 @@ inline machine_log run(const arm& a, unsigned seed = 1) {
     const int fine = 20;
     const double h = step / fine, bristle = 2 * least_angle;
     const auto reference = turns(a);
-    double q = reference[0], v = 0, z = 0, before = q, integral = 0;
+    std::mt19937 shaken(seed + 1);
+    double rumble = 0, q = reference[0], v = 0, z = 0, before = q, integral = 0;
     for (const double r : reference) {
         const double y = std::round((q + noise(random)) / least_angle) * least_angle;
         const double speed = 30 * (r - y) - (y - before) / step;
@@ -60,16 +64,23 @@ inline machine_log run(const arm& a, unsigned seed = 1) {
         log.reference.push_back(r);
         log.position.push_back(y);
         log.command.push_back(u);
+        if (a.rumble > 0)
+            rumble = 0.9 * rumble + a.rumble * std::sqrt(0.19) * std::normal_distribution<double>()(shaken);
         for (int i = 0; i < fine; ++i) {
             const double motor = a.torque_constant * u;
-            const double carried = a.gravity * std::sin(q - a.phase) - a.constant + a.spring * q;
+            const double carried =
+                a.gravity * std::sin(q - a.phase) - a.constant + (a.spring + a.curve * q) * q;
+            double magnets = 0;
+            for (int n = 1; n <= 5 && a.cogging > 0; ++n)
+                magnets +=
+                    a.cogging * std::pow(0.6, n - 1) * std::sin(2 * std::numbers::pi * n * q / a.pitch + n);
             const double level = a.coulomb + a.load_friction * std::abs(motor + carried);
             const double side = v > 0 ? 1 : v < 0 ? -1 : 0, stiffness = level / bristle, was = z;
             z = side * bristle + (z - side * bristle) * std::exp(-std::abs(v) * h / bristle);
             double friction = a.viscous * v + stiffness * z;
             friction += 0.7 * std::sqrt(stiffness * a.inertia) * (z - was) / h;
             const double before_v = v;
-            v += h * (motor - carried - friction) / a.inertia;
+            v += h * (motor + magnets + rumble - carried - friction) / a.inertia;
             q += h * (before_v + v) / 2;
         }
     }

@@ -153,3 +153,13 @@ TEST_CASE("gravity: init estimates it from a log with friction and a coarse, noi
                           [](const std::string& n) { return n.find("gravity 3.2 N m") != n.npos; }));
     }
 }
+TEST_CASE("gravity: a curve over the angle is no weight beside a constant torque that cancels it") {
+    const arm real{.gravity = 3.2, .curve = 0.5, .low = -0.9, .high = 0.9};
+    auto file = described(real);
+    file.axes[0].plant.gravity_torque_Nm = 3.2;
+    file.axes[0].plant.gravity_phase_rad = 0;
+    const auto d = diagnose(file, run(real));
+    CAPTURE(said(d));
+    CHECK(claims(d).empty());
+    CHECK(d.verdict > verdict::within_tolerance);
+}

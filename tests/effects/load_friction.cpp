@@ -67,3 +67,18 @@ TEST_CASE("load_friction: a linear axis that lifts a weight has it as well" * do
     file.axes[0].plant.constant_force_N = 300;
     named(diagnose(file, as_log(run(real, strokes))), "load_friction", "load_friction", 0.1, 0.05);
 }
+TEST_CASE("load_friction: beside cogging of five harmonics it is found, and no second wave for what a period "
+          "of three "
+          "waves cannot follow") {
+    const arm real{.gravity = 3.2, .load_friction = 0.15, .cogging = 0.8, .pitch = 0.11};
+    auto file = described(real);
+    file.axes[0].plant.gravity_torque_Nm = 3.2;
+    file.axes[0].plant.gravity_phase_rad = 0;
+    const auto d = diagnose(file, run(real));
+    CAPTURE(said(d));
+    auto names = claims(d);
+    std::sort(names.begin(), names.end());
+    CHECK(names == std::vector<std::string>{"cogging", "load_friction"});
+    for (const cause& c : d.causes)
+        if (c.effect == "cogging") CHECK(near(value_of(c, "cogging_period_rad").value, 0.11, 0.01));
+}

@@ -139,24 +139,27 @@ private:
         return b << 16 | a;
     }
 
-    /// A variable of real numbers; not texts, structures, cells and objects, nor a single number.
-    void read_variable(const element& whole) {
+    /// A variable of real numbers, or what a structure or a cell holds of them, under the name of its place;
+    /// not texts and objects, nor a single number.
+    void read_variable(const element& whole, std::string_view place = {}, int depth = 0) {
         const std::size_t behind = at_;
         at_ = whole.at;
         const element flags = next();
         if (flags.type != 6 || flags.size != 8) refuse(whole.at, "a variable begins with its flags (8 bytes)");
         const auto word = integer<std::uint32_t>(flags.at);
         const std::uint32_t kind = word & 0xff;
-        constexpr std::uint32_t of_doubles = 6, last = 15, opaque = 17;
+        constexpr std::uint32_t cells = 1, structure = 2, of_doubles = 6, last = 15, opaque = 17;
         if (kind == opaque) return void(at_ = behind); // an object of a class has no dimensions
         const element dimensions = next();
         if (dimensions.type != 5 || dimensions.size < 8 || dimensions.size % 4 != 0)
             refuse(dimensions.at, "the dimensions of a variable are 32-bit integers, two or more");
         const element name = next();
-        variable v{
-            .name = std::string(bytes_.substr(name.at, name.size)), .rows = 1, .columns = 1, .values = {}};
-        if (const auto end = v.name.find('\0'); end != v.name.npos) v.name.resize(end);
-        if (kind >= of_doubles && kind <= last) {
+        variable v{.name = place.empty() ? text_at(name.at, name.size) : std::string(place),
+                   .rows = 1,
+                   .columns = 1,
+                   .values = {}};
+        const bool of_numbers = kind >= of_doubles && kind <= last;
+        if (of_numbers || kind == cells || kind == structure)
             for (std::size_t k = 0; k < dimensions.size / 4; ++k) {
                 const auto n = integer<std::int32_t>(dimensions.at + 4 * k);
                 if (n < 0)
@@ -166,13 +169,49 @@ private:
                     (v.columns > 0 && v.rows > bytes_.size() / v.columns))
                     refuse(dimensions.at, fmt::format("{}: has more numbers than the file has bytes", v.name));
             }
+        if (kind == cells || kind == structure) read_parts(v, whole, kind == structure, depth);
+        if (of_numbers) {
             if (word & 0x0800)
                 refuse(whole.at, fmt::format("{}: is complex: save its real and imaginary part apart", v.name));
             read_numbers(v);
-            if (at_ > behind) refuse(whole.at, fmt::format("{}: holds more data than its size allows", v.name));
             if (v.values.size() > 1) variables_.push_back(std::move(v));
         }
+        if (at_ > behind) refuse(whole.at, fmt::format("{}: holds more data than its size allows", v.name));
         at_ = behind;
+    }
+
+    /// Text up to its end mark, as the head of a column.
+    std::string text_at(std::size_t at, std::size_t size) const {
+        const std::string_view text = bytes_.substr(at, size);
+        return column_name(text.substr(0, text.find('\0')));
+    }
+
+    /// The fields of a structure, name.field, or the contents of a cell; of several name_1.field, name_2.field.
+    void read_parts(const variable& v, const element& whole, bool is_structure, int depth) {
+        constexpr int deepest = 16;
+        if (depth == deepest)
+            refuse(whole.at, fmt::format("{}: more than {} structures in one another", v.name, deepest));
+        std::vector<std::string> fields;
+        if (is_structure) {
+            const element length = next(), names = next();
+            const auto each = length.size == 4 ? integer<std::uint32_t>(length.at) : 0;
+            if (length.type != 5 || each == 0)
+                refuse(length.at,
+                       fmt::format("{}: the length of the names of its fields is no number", v.name));
+            for (std::size_t k = 0; k + each <= names.size; k += each)
+                fields.push_back("." + text_at(names.at + k, each));
+        } else {
+            fields.emplace_back();
+        }
+        const std::uint64_t count = v.rows * v.columns;
+        for (std::uint64_t k = 0; k < count && !fields.empty(); ++k)
+            for (const std::string& field : fields) {
+                const element part = next();
+                if (part.type != matrix) refuse(part.at, fmt::format("{}{} is no variable", v.name, field));
+                const std::string of =
+                    count > 1 ? fmt::format("{}_{}{}", v.name, k + 1, field) : v.name + field;
+                if (part.size > 0) read_variable(part, of, depth + 1);
+            }
     }
 
     void read_numbers(variable& v) {
@@ -185,7 +224,15 @@ private:
                                      v.columns, each, e.size));
         v.values.resize(e.size / each);
         for (std::size_t k = 0; k < v.values.size(); ++k) v.values[k] = number(e.type, e.at + k * each);
-        if (v.rows == 1) std::swap(v.rows, v.columns);
+        if (v.columns > v.rows) lay_down(v);
+    }
+    /// The rows of a matrix that is wider than long become its columns: the longer side is time.
+    static void lay_down(variable& v) {
+        std::vector<double> turned(v.values.size());
+        for (std::size_t k = 0; k < turned.size(); ++k)
+            turned[k % v.rows * v.columns + k / v.rows] = v.values[k];
+        v.values = std::move(turned);
+        std::swap(v.rows, v.columns);
     }
     double number(std::uint32_t type, std::size_t at) const {
         switch (type) {
@@ -216,8 +263,8 @@ private:
     std::string table() const {
         if (variables_.empty())
             throw bad_input(file_,
-                            "holds no vector of numbers: save time, position and command as vectors, not in "
-                            "structures or cells");
+                            "holds no vector of numbers, alone or in a structure or cell (objects, such as a "
+                            "timeseries or a table, are not read): save time, position and command as vectors");
         std::vector<number_column> columns;
         for (const variable& v : variables_)
             for (std::uint64_t k = 0; k < v.columns; ++k) {
@@ -241,8 +288,9 @@ private:
 inline bool is_mat_file(std::string_view bytes) { return detail::mat_reader::is_one(bytes); }
 
 /// The vectors and matrices of a MAT-file (level 5, also compressed) as a table of text whose first line names
-/// the variables: what import_log reads; not single numbers, texts, structures, cells and objects. Refuses
-/// other levels, complex numbers, and a damaged file with its byte (bad_input).
+/// the variables: what import_log reads. Those in a structure s are s.field, those in a cell c c_1, c_2, ...;
+/// of a matrix the longer side is time. Not single numbers, texts and objects. Refuses other levels, complex
+/// numbers, and a damaged file with its byte (bad_input).
 inline std::string table_of_mat_file(std::string_view bytes, std::string_view file) {
     return detail::mat_reader(bytes, file).take();
 }

@@ -152,6 +152,7 @@ QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, 
     note_digits(out, c);
     note_limit(out, c);
     note_denied(out, c);
+    note_cancelled(out, c);
     note_rows_of_delay(out, c, causes);
     note_late_velocity(out, c, causes);
     note_excluded(out, causes);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../where/places.hpp"
+#include "../which/doubt.hpp"
 #include "../which/late_velocity.hpp"
 
 #include <algorithm>
@@ -67,6 +68,19 @@ inline void note_limit(diagnosis_result& out, const axis_case& c) {
             "axis {}: behind a time at its limit, first at {:.4g} s, the controller's integral is another "
             "than the described kind's: it is limited otherwise. Nothing else of the controller differs.",
             c.axis.name, *c.controller->limits_otherwise_from));
+}
+
+/// Two forces over the position of which little is left together.
+inline void note_cancelled(diagnosis_result& out, const axis_case& c) {
+    for (const effect* e : c.best().effects) {
+        const effect* other = cancelled_by(c, *e);
+        if (!other) continue;
+        out.notes.push_back(fmt::format(
+            "axis {}: {} and {} cancel here: together they are smaller than either. Any curve over the "
+            "position looks like two such forces.",
+            c.axis.name, e->label, other->label));
+        return;
+    }
 }
 
 /// A delay that is another by whole rows: columns that were not recorded together look the same, and without a

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../effect/effect_list.hpp"
+#include "as_described.hpp"
 
 namespace quadrant::inline v0::diagnosis::detail {
 
@@ -14,33 +15,38 @@ QUADRANT_DIAGNOSIS_DECL void in_lowest_terms(std::vector<parameter_estimate>& va
         if (phases && &p != phases && p.values.size() == phases->values.size() && p.values.size() > 1)
             sizes = &p;
     if (!cycle || !sizes) return;
-    double odd = 0, all = 0;
-    for (std::size_t i = 0; i < sizes->values.size(); ++i) {
-        all += square(sizes->values[i].value);
-        if (i % 2 == 0) odd += square(sizes->values[i].value);
-    }
-    if (!(odd < 0.01 * all)) return;
+    std::vector<double> amplitudes;
+    for (const estimate& e : sizes->values) amplitudes.push_back(e.value);
+    const std::size_t n = repeats_in_its_period(amplitudes);
+    if (n == 1) return;
     for (parameter_estimate* p : {sizes, phases}) {
-        std::vector<estimate> even;
-        for (std::size_t i = 1; i < p->values.size(); i += 2) even.push_back(p->values[i]);
-        p->values = even;
+        std::vector<estimate> kept;
+        for (std::size_t i = n; i <= p->values.size(); i += n) kept.push_back(p->values[i - 1]);
+        p->values = kept;
     }
-    const double factor = cycle->key.ends_with("_Hz") ? 2 : 0.5;
+    const double factor = std::pow(static_cast<double>(n), cycle->key.ends_with("_Hz") ? 1 : -1);
     for (estimate& e : cycle->values) e = {factor * e.value, factor * e.low, factor * e.high};
-    in_lowest_terms(values);
 }
 
 QUADRANT_DIAGNOSIS_DECL void add_model_error(std::vector<parameter_estimate>& values, const effect& e,
                                              const axis_case& c, double left) {
     in_lowest_terms(values);
-    const double relative = std::min(1.0, std::hypot(0.01, left));
-    for (auto& p : values)
-        for (estimate& v : p.values) {
-            const double part = relative * (p.key.ends_with("_rad") ? 1.0 : std::abs(v.value));
+    plant_model as_given = c.models.given().fit.plant;
+    for (auto& p : values) {
+        const machine_key* key = key_named(p.key);
+        const auto described =
+            key && key->components.empty() ? values_of(e, as_given, p.key) : std::vector<double>{};
+        for (std::size_t i = 0; i < p.values.size(); ++i) {
+            estimate& v = p.values[i];
+            const double size = p.key.ends_with("_rad") ? 1.0 : std::abs(v.value);
+            // What a described number is wrong by is what its cause explains.
+            const double moved = i < described.size() ? std::min(size, std::abs(v.value - described[i])) : size;
+            const double part = std::min(size, std::hypot(0.01 * size, left * moved));
             const double error = std::hypot(part, p.key.ends_with("_m") ? 0.5 * c.resolution : 0.0);
             v.low = v.value - std::hypot(v.value - v.low, error);
             v.high = v.value + std::hypot(v.high - v.value, error);
         }
+    }
     for (estimate& v : values.front().values) v.high *= e.by_another_law;
 }
 

@@ -61,6 +61,10 @@ QUADRANT_DIAGNOSIS_DECL bool may_be_friction(const axis_case& c, const effect& e
 /// others took the rest off.
 QUADRANT_DIAGNOSIS_DECL bool drowns_in_the_rest(const axis_case& c, const effect& e);
 
+/// Of a force over the position another one that cancels it: together they are smaller than either. What is
+/// left of them is a curve over the position, and any two that differ little in shape make one. Null: none.
+QUADRANT_DIAGNOSIS_DECL const effect* cancelled_by(const axis_case& c, const effect& e);
+
 } // namespace quadrant::inline v0::diagnosis::detail
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION

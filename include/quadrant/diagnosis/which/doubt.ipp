@@ -216,4 +216,23 @@ QUADRANT_DIAGNOSIS_DECL bool drowns_in_the_rest(const axis_case& c, const effect
                        [&](const channel& band) { return rms(seen(does, band)) < 2 * rms(seen(left, band)); });
 }
 
+QUADRANT_DIAGNOSIS_DECL const effect* cancelled_by(const axis_case& c, const effect& e) {
+    const auto force_of = [&](const effect& of) {
+        const plant_model without = c.models.plant_without(c.best(), of);
+        std::vector<double> out;
+        for (const double q : c.record.position)
+            out.push_back(c.best().fit.plant.static_force(q) - without.static_force(q));
+        return out;
+    };
+    const std::vector<double> own = force_of(e);
+    for (const effect* other : c.best().effects) {
+        if (other == &e) continue;
+        std::vector<double> both = force_of(*other);
+        const double least = std::min(rms(own), rms(both));
+        for (std::size_t k = 0; k < both.size(); ++k) both[k] += own[k];
+        if (rms(both) < least) return other;
+    }
+    return nullptr;
+}
+
 } // namespace quadrant::inline v0::diagnosis::detail

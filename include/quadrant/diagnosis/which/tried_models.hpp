@@ -55,6 +55,10 @@ public:
     std::vector<const effect*> relatives(const candidate& before) const;
 
 protected:
+    /// A wave of which only every n-th harmonic matters repeats n times in its period. Fitted again with the
+    /// shorter one, it has as many harmonics there: what it could not follow is no second cause.
+    void mend_in_lowest_terms(std::vector<candidate>& models, const std::vector<std::size_t>& which) const;
+
     tried_models(const axis_record& record, const axis_description& axis, exclusions excluded, const rules& r,
                  progress tell)
         : model_fits(record, axis, r, std::move(tell)), excluded_(std::move(excluded)) {}

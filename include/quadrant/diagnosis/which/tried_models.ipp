@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../effect/unlisted.hpp"
+#include "lowest_terms.hpp"
 
 namespace quadrant::inline v0::diagnosis {
 
@@ -27,6 +28,7 @@ tried_models::with_each(const candidate& from, const std::vector<const effect*>&
     finish_near(rank, most_fitted(), from, out);
     mend_from_parts(out, rank, from);
     mend_from_alone(out, rank, from);
+    mend_in_lowest_terms(out, rank);
     for (std::size_t i : rank) {
         if (out[i].missed) {
             missed_.insert(out[i].effects.back());
@@ -37,6 +39,24 @@ tried_models::with_each(const candidate& from, const std::vector<const effect*>&
     }
     std::erase_if(out, [](const candidate& c) { return !std::isfinite(c.total); });
     return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL void tried_models::mend_in_lowest_terms(std::vector<candidate>& models,
+                                                                const std::vector<std::size_t>& which) const {
+    std::vector<std::pair<std::size_t, candidate>> again; // of which model
+    for (const std::size_t i : which) {
+        if (!std::isfinite(models[i].total) || models[i].missed || over()) continue;
+        candidate c = models[i];
+        const auto shorter = detail::in_lowest_terms(c);
+        if (!shorter) continue;
+        begin_at(c, *shorter);
+        again.emplace_back(i, std::move(c));
+    }
+    std::vector<candidate*> sketches;
+    for (auto& [i, c] : again) sketches.push_back(&c);
+    finish(record_, sketches);
+    for (auto& [i, c] : again)
+        if (c.total > models[i].total) models[i] = std::move(c);
 }
 
 QUADRANT_DIAGNOSIS_DECL candidate tried_models::with(const candidate& from, const effect* added) const {
@@ -57,6 +77,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> tried_models::with_these(const ca
     finish_best(fresh, most, out, when_late::go_on);
     mend_from_parts(out, fresh, from);
     mend_from_alone(out, fresh, from);
+    mend_in_lowest_terms(out, fresh);
     for (std::size_t i : fresh) {
         says(describe(out[i]));
         tried_.push_back(out[i]);
