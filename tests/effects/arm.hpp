@@ -17,7 +17,6 @@ struct arm {
     double constant = 0, spring = 0;
     double curve = 0;              ///< torque -curve q^2
     double cogging = 0, pitch = 0; ///< the first of five harmonics, each 0.6 times that before
-    double rumble = 0;             ///< rms of a torque without a cause, forgotten in 10 ms
     double low = -1.4, high = 1.4; ///< angles between which it moves
 };
 
@@ -53,8 +52,7 @@ inline machine_log run(const arm& a, unsigned seed = 1) {
     const int fine = 20;
     const double h = step / fine, bristle = 2 * least_angle;
     const auto reference = turns(a);
-    std::mt19937 shaken(seed + 1);
-    double rumble = 0, q = reference[0], v = 0, z = 0, before = q, integral = 0;
+    double q = reference[0], v = 0, z = 0, before = q, integral = 0;
     for (const double r : reference) {
         const double y = std::round((q + noise(random)) / least_angle) * least_angle;
         const double speed = 30 * (r - y) - (y - before) / step;
@@ -64,8 +62,6 @@ inline machine_log run(const arm& a, unsigned seed = 1) {
         log.reference.push_back(r);
         log.position.push_back(y);
         log.command.push_back(u);
-        if (a.rumble > 0)
-            rumble = 0.9 * rumble + a.rumble * std::sqrt(0.19) * std::normal_distribution<double>()(shaken);
         for (int i = 0; i < fine; ++i) {
             const double motor = a.torque_constant * u;
             const double carried =
@@ -80,7 +76,7 @@ inline machine_log run(const arm& a, unsigned seed = 1) {
             double friction = a.viscous * v + stiffness * z;
             friction += 0.7 * std::sqrt(stiffness * a.inertia) * (z - was) / h;
             const double before_v = v;
-            v += h * (motor + magnets + rumble - carried - friction) / a.inertia;
+            v += h * (motor + magnets - carried - friction) / a.inertia;
             q += h * (before_v + v) / 2;
         }
     }

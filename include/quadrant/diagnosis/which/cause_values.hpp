@@ -12,8 +12,7 @@ QUADRANT_DIAGNOSIS_DECL void in_lowest_terms(std::vector<parameter_estimate>& va
 
 /// The scatter of the segments does not show the error of a law that is a little wrong. No value is better than
 /// one per cent, none better than what is left beside what its effect explains (worst case: the whole residual
-/// biases this parameter, which explains by as much as it is off the described one), no length better than half
-/// a count. An angle moves by as much in radian.
+/// biases this parameter), no length better than half a count. An angle moves by as much in radian.
 QUADRANT_DIAGNOSIS_DECL void add_model_error(std::vector<parameter_estimate>& values, const effect& e,
                                              const axis_case& c, double left);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../effect/effect_list.hpp"
-#include "as_described.hpp"
 
 namespace quadrant::inline v0::diagnosis::detail {
 
@@ -31,22 +30,14 @@ QUADRANT_DIAGNOSIS_DECL void in_lowest_terms(std::vector<parameter_estimate>& va
 QUADRANT_DIAGNOSIS_DECL void add_model_error(std::vector<parameter_estimate>& values, const effect& e,
                                              const axis_case& c, double left) {
     in_lowest_terms(values);
-    plant_model as_given = c.models.given().fit.plant;
-    for (auto& p : values) {
-        const machine_key* key = key_named(p.key);
-        const auto described =
-            key && key->components.empty() ? values_of(e, as_given, p.key) : std::vector<double>{};
-        for (std::size_t i = 0; i < p.values.size(); ++i) {
-            estimate& v = p.values[i];
-            const double size = p.key.ends_with("_rad") ? 1.0 : std::abs(v.value);
-            // What a described number is wrong by is what its cause explains.
-            const double moved = i < described.size() ? std::min(size, std::abs(v.value - described[i])) : size;
-            const double part = std::min(size, std::hypot(0.01 * size, left * moved));
+    const double relative = std::min(1.0, std::hypot(0.01, left));
+    for (auto& p : values)
+        for (estimate& v : p.values) {
+            const double part = relative * (p.key.ends_with("_rad") ? 1.0 : std::abs(v.value));
             const double error = std::hypot(part, p.key.ends_with("_m") ? 0.5 * c.resolution : 0.0);
             v.low = v.value - std::hypot(v.value - v.low, error);
             v.high = v.value + std::hypot(v.high - v.value, error);
         }
-    }
     for (estimate& v : values.front().values) v.high *= e.by_another_law;
 }
 
