@@ -47,9 +47,9 @@ QUADRANT_DIAGNOSIS_DECL void tried_models::mend_in_lowest_terms(std::vector<cand
     for (const std::size_t i : which) {
         if (!std::isfinite(models[i].total) || models[i].missed || over()) continue;
         candidate c = models[i];
-        const auto shorter = detail::in_lowest_terms(c);
-        if (!shorter) continue;
-        begin_at(c, *shorter);
+        const auto by_own_period = detail::in_lowest_terms(c);
+        if (!by_own_period) continue;
+        begin_at(c, *by_own_period);
         again.emplace_back(i, std::move(c));
     }
     std::vector<candidate*> sketches;
