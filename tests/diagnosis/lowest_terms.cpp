@@ -38,7 +38,7 @@ TEST_CASE(
     "lowest terms: the shorter wave does what the harmonics that matter did, and is searched at its period") {
     candidate c = by_three_times_the_period();
     const harmonics before = c.fit.plant.cogging;
-    const auto shorter = quadrant::diagnosis::detail::in_lowest_terms(c);
+    const auto shorter = quadrant::diagnosis::detail::by_shortest_periods(c);
     REQUIRE(shorter);
     CHECK(shorter->cogging.period == doctest::Approx(0.03));
     CHECK(shorter->cogging.count == harmonics::most);
@@ -46,20 +46,21 @@ TEST_CASE(
     CHECK(shorter->cogging.sizes()[0] == doctest::Approx(20));
     CHECK(shorter->cogging.sizes()[1] == doctest::Approx(7));
     for (double x = 0; x < 0.1; x += 0.0037) CHECK(std::abs(shorter->cogging.at(x) - before.at(x)) < 0.9);
+    CHECK(c.fit.plant.cogging.period == 0.09);
     CHECK(c.fit.parameters[0].low < 0.03);
     CHECK(c.fit.parameters[0].high > 0.03);
     CHECK(c.fit.parameters[0].high < 0.04);
-    CHECK_FALSE(quadrant::diagnosis::detail::in_lowest_terms(c) ==
+    CHECK_FALSE(quadrant::diagnosis::detail::by_shortest_periods(c) ==
                 std::nullopt); // the model itself is as it was
 }
 TEST_CASE("lowest terms: a wave that has them, or a period of the machine file, stays") {
     candidate c = by_three_times_the_period();
     c.fit.plant.cogging = {0.03, {20, 7}, {0.3, 0.6}};
-    CHECK_FALSE(quadrant::diagnosis::detail::in_lowest_terms(c));
+    CHECK_FALSE(quadrant::diagnosis::detail::by_shortest_periods(c));
     c = by_three_times_the_period();
     c.fit.parameters.erase(c.fit.parameters.begin()); // described: not searched
-    CHECK_FALSE(quadrant::diagnosis::detail::in_lowest_terms(c));
+    CHECK_FALSE(quadrant::diagnosis::detail::by_shortest_periods(c));
     c = by_three_times_the_period();
     c.fit.parameters[0].spread = 0.01; // calibrated
-    CHECK_FALSE(quadrant::diagnosis::detail::in_lowest_terms(c));
+    CHECK_FALSE(quadrant::diagnosis::detail::by_shortest_periods(c));
 }

@@ -162,4 +162,7 @@ TEST_CASE("gravity: a curve over the angle is no weight beside a constant torque
     CAPTURE(said(d));
     CHECK(claims(d).empty());
     CHECK(d.verdict > verdict::within_tolerance);
+    CHECK(std::any_of(d.notes.begin(), d.notes.end(), [](const std::string& note) {
+        return note.find("cancel here: together they are smaller than either") != note.npos;
+    }));
 }

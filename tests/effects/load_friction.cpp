@@ -67,9 +67,7 @@ TEST_CASE("load_friction: a linear axis that lifts a weight has it as well" * do
     file.axes[0].plant.constant_force_N = 300;
     named(diagnose(file, as_log(run(real, strokes))), "load_friction", "load_friction", 0.1, 0.05);
 }
-TEST_CASE("load_friction: beside cogging of five harmonics it is found, and no second wave for what a period "
-          "of three "
-          "waves cannot follow") {
+TEST_CASE("load_friction: beside cogging of five harmonics both are found, and no second wave") {
     const arm real{.gravity = 3.2, .load_friction = 0.15, .cogging = 0.8, .pitch = 0.11};
     auto file = described(real);
     file.axes[0].plant.gravity_torque_Nm = 3.2;

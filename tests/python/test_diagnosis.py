@@ -211,7 +211,7 @@ def test_foreign_columns_by_an_import_map():
         quadrant.read_log(folder / "halsampler.txt")
 
 
-@pytest.mark.skipif(os.environ.get("QUADRANT_TESTS") != "all", reason="with QUADRANT_TESTS=all: a third of the time of these tests")
+@pytest.mark.skipif(os.environ.get("QUADRANT_TESTS") != "all", reason="with QUADRANT_TESTS=all: 12 of the 30 s of these tests")
 def test_a_trial_of_two_machines():
     t = quadrant.trial(3, seed=1, only=[0, 1], jobs=2)
     assert [c["index"] for c in t.cases] == [0, 1]

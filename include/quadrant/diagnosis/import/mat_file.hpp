@@ -159,7 +159,8 @@ private:
                    .columns = 1,
                    .values = {}};
         const bool of_numbers = kind >= of_doubles && kind <= last;
-        if (of_numbers || kind == cells || kind == structure)
+        const bool of_parts = kind == cells || kind == structure;
+        if (of_numbers || of_parts)
             for (std::size_t k = 0; k < dimensions.size / 4; ++k) {
                 const auto n = integer<std::int32_t>(dimensions.at + 4 * k);
                 if (n < 0)
@@ -169,7 +170,7 @@ private:
                     (v.columns > 0 && v.rows > bytes_.size() / v.columns))
                     refuse(dimensions.at, fmt::format("{}: has more numbers than the file has bytes", v.name));
             }
-        if (kind == cells || kind == structure) read_parts(v, whole, kind == structure, depth);
+        if (of_parts) read_parts(v, whole, kind == structure, depth);
         if (of_numbers) {
             if (word & 0x0800)
                 refuse(whole.at, fmt::format("{}: is complex: save its real and imaginary part apart", v.name));
@@ -224,10 +225,10 @@ private:
                                      v.columns, each, e.size));
         v.values.resize(e.size / each);
         for (std::size_t k = 0; k < v.values.size(); ++k) v.values[k] = number(e.type, e.at + k * each);
-        if (v.columns > v.rows) lay_down(v);
+        if (v.columns > v.rows) transpose(v);
     }
     /// The rows of a matrix that is wider than long become its columns: the longer side is time.
-    static void lay_down(variable& v) {
+    static void transpose(variable& v) {
         std::vector<double> turned(v.values.size());
         for (std::size_t k = 0; k < turned.size(); ++k)
             turned[k % v.rows * v.columns + k / v.rows] = v.values[k];

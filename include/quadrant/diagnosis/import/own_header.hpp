@@ -89,15 +89,16 @@ inline import_map map_of_header(std::string_view text, std::string_view file) {
         axis->signals.push_back({signal->second, source});
     }
     std::erase_if(out.axes, [](const auto& a) { return !a.find(signal_role::position); });
-    std::vector<std::string> names;
-    for (const auto& cell : cells)
-        if (double number = 0; !cell.text.empty() && lines.parse(cell.text, number))
-            names.emplace_back(cell.text);
-    std::string instead = ": say with --map which column is what";
-    if (!names.empty()) instead += "; there are " + some_of(names);
-    if (!out.files[0].time) lines.refuse(0, "no column t_s (or t_ms, t_us, \"time [ms]\")" + instead);
+    const auto instead = [&] {
+        std::vector<std::string> names;
+        for (const auto& cell : cells)
+            if (double number = 0; !cell.text.empty() && lines.parse(cell.text, number))
+                names.emplace_back(cell.text);
+        return ": say with --map which column is what" + (names.empty() ? "" : "; there are " + some_of(names));
+    };
+    if (!out.files[0].time) lines.refuse(0, "no column t_s (or t_ms, t_us, \"time [ms]\")" + instead());
     if (out.axes.empty())
-        lines.refuse(0, "no column such as x_pos_m or x_pos_rad (or x_pos_mm, x_pos_deg)" + instead);
+        lines.refuse(0, "no column such as x_pos_m or x_pos_rad (or x_pos_mm, x_pos_deg)" + instead());
     return out;
 }
 

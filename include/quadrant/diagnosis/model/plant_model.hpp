@@ -5,6 +5,7 @@
 #include "friction_contact.hpp"
 #include "harmonics.hpp"
 
+#include <array>
 #include <limits>
 
 namespace quadrant::inline v0::diagnosis {
@@ -109,6 +110,8 @@ struct plant_model {
     double static_force(double position) const {
         return constant_force - spring * position - weight() * std::sin(position - gravity.phase);
     }
+    /// All that repeats: along the travel, and with the process in time.
+    std::array<harmonics*, 5> waves() { return {&ripple, &cogging, &cutting, &cyclic, &friction.along}; }
     /// Force that keeps the load at rest at a position, a process running [N].
     double holding_force(double position) const { return -(static_force(position) + cutting_mean); }
 

@@ -116,7 +116,7 @@ QUADRANT_DIAGNOSIS_DECL plant_model axis_models::plant_without(const candidate& 
             std::any_of(values.begin(), values.end(), [&](const key_value& v) { return v.key == p.key; }))
             p.of(out) = p.of(described);
     if (out.drive.loss == described.drive.loss) out.drive.received = described.drive.received;
-    for (harmonics* h : {&out.ripple, &out.cogging, &out.cutting, &out.cyclic, &out.friction.along})
+    for (harmonics* h : out.waves())
         if (!(h->period > 0)) h->count = 0;
     return out;
 }

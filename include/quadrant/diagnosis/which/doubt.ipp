@@ -225,6 +225,7 @@ QUADRANT_DIAGNOSIS_DECL const effect* cancelled_by(const axis_case& c, const eff
         return out;
     };
     const std::vector<double> own = force_of(e);
+    if (!(rms(own) > 0)) return nullptr; // most causes are no force over the position
     for (const effect* other : c.best().effects) {
         if (other == &e) continue;
         std::vector<double> both = force_of(*other);

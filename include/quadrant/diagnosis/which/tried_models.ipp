@@ -47,7 +47,7 @@ QUADRANT_DIAGNOSIS_DECL void tried_models::mend_in_lowest_terms(std::vector<cand
     for (const std::size_t i : which) {
         if (!std::isfinite(models[i].total) || models[i].missed || over()) continue;
         candidate c = models[i];
-        const auto by_own_period = detail::in_lowest_terms(c);
+        const auto by_own_period = detail::by_shortest_periods(c);
         if (!by_own_period) continue;
         begin_at(c, *by_own_period);
         again.emplace_back(i, std::move(c));
