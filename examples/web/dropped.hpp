@@ -28,51 +28,23 @@ inline nlohmann::json described(const machine_log& log) {
             {"notes", log.notes}};
 }
 
-/// The columns of a table that names none of our columns, and what can be guessed of each. A first line of
-/// numbers
-/// alone names no columns: they go by number.
+/// The columns of a table that names none of our columns, and what can be guessed of each. Without names they
+/// go by number.
 inline nlohmann::json columns_of(const std::string& text, const std::string& name) {
     nlohmann::json columns = nlohmann::json::array(), units = nlohmann::json::array(),
                    roles = nlohmann::json::array();
     for (const unit_name& u : unit_names) units.push_back(u.name);
     for (const signal_kind& k : signal_kinds) roles.push_back(k.key);
-    if (const proposed_map known = propose_map(text, name); !known.tool.empty()) {
-        for (const auto& c : known.columns)
-            columns.push_back({{"name", c.name},
-                               {"column", known.source_of(c).at("column")},
-                               {"unit", c.unit},
-                               {"time", c.time},
-                               {"role", c.is_measured ? "measured" : c.role},
-                               {"axis", c.axis}});
-        return {{"columns", columns},     {"named", known.tool != "halsampler"},
-                {"layout", known.layout}, {"units", units},
-                {"roles", roles},         {"tool", known.tool},
-                {"open", known.open}};
-    }
-    auto layout = detail::layout_of(text);
-    const std::string_view first = std::string_view(text).substr(0, text.find('\n'));
-    if (layout.separator == ',' && first.find(',') == first.npos) layout.separator = ' ';
-    detail::foreign_lines lines(layout, text, name);
-    bool named = false;
-    double number = 0;
-    if (lines.next())
-        for (const auto& cell : lines.cells()) {
-            const unit_name* unit = unit_at_end(cell.text);
-            named = named || lines.parse(cell.text, number) != nullptr;
-            columns.push_back({{"name", std::string(cell.text)},
-                               {"unit", unit ? std::string(unit->name) : ""},
-                               {"time", detail::names_time(cell.text)},
-                               {"role", ""},
-                               {"axis", "x"}});
-        }
-    for (std::size_t k = 0; k < columns.size(); ++k) // by name, or by number
-        columns[k]["column"] = named ? columns[k]["name"] : nlohmann::json(k + 1);
-    const std::string separator = layout.separator == '\t'  ? "tab"
-                                  : layout.separator == ' ' ? "blanks"
-                                                            : std::string(1, layout.separator);
-    nlohmann::json keys = {{"separator", separator}, {"decimal", std::string(1, layout.decimal)}};
-    if (named) keys["header"] = 1;
-    return {{"columns", columns}, {"named", named}, {"layout", keys}, {"units", units}, {"roles", roles}};
+    const proposed_map known = propose_map(text, name);
+    for (const auto& c : known.columns)
+        columns.push_back({{"name", c.name},
+                           {"column", known.source_of(c).at("column")},
+                           {"unit", c.unit},
+                           {"time", c.time},
+                           {"role", c.is_measured ? "measured" : c.role},
+                           {"axis", c.axis}});
+    return {{"columns", columns}, {"layout", known.layout}, {"units", units},
+            {"roles", roles},     {"open", known.open},     {"tool", known.tool}};
 }
 
 /// A log, by our own reader or through a map; with jittering stamps on an even clock.

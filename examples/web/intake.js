@@ -67,12 +67,13 @@ function ask_columns() {
     the('columns').hidden = !name;
     if (!name) return;
     const table = dropped.get(name);
-    the('columns-why').textContent = table.tool
-        ? `${name} looks like a file of ${table.tool}. What its header says is filled in${table.open.length ? `; it does not say: ${table.open.join('; ')}` : ''}.`
-        : `${name} does not name its columns as our logs do (t_s, x_pos_m, ...). Position, command and time are needed; a reference if there is one.`;
+    const by = table.tool
+        ? `looks like a file of ${table.tool}. What its header says is filled in`
+        : 'does not name its columns as our logs do (t_s, x_pos_m, ...). Position, command and time are needed; a reference if there is one. What the names say is filled in';
+    the('columns-why').textContent = `${name} ${by}${table.open.length ? `; it does not say: ${table.open.join('; ')}` : ''}.`;
     const option = (value, text = value.replaceAll('_', ' ')) => make('option', {value, textContent: text});
     the('columns').querySelector('tbody').replaceChildren(...table.columns.map((c, k) => {
-        const title = c.name && table.named ? c.name : `column ${k + 1}${c.name ? ` (${c.name} in the first row)` : ''}`;
+        const title = c.name || `column ${k + 1}`;
         const cell = (tag, what, properties = {}, ...children) => make('td', {}, (() => {
             const e = make(tag, properties, ...children);
             e.setAttribute('aria-label', `${what} of ${title}`);

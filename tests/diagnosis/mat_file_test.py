@@ -177,6 +177,8 @@ def main(program):
                 ("structures without end", mat([holding("s", [deep], ("a",))]), "more than 16 structures in one another"),
                 ("names without a length", mat([holding("s", [variable("", [t])], ("a",), length=0)]),
                  "s: the length of the names of its fields is no number"),
+                ("names of uneven length", mat([holding("s", [variable("", [t])], ("abcd",), length=3)]),
+                 "s: the names of its fields have 4 bytes, 3 each"),
                 ("a part that is none", mat([holding("s", [element("<", 9, bytes(16))], ("a",))]), "s.a is no variable"),
                 ("a part beyond its structure", mat([holding("s", [variable("", [t])[:-8]], ("a",)), variable("t_s", [t])]),
                  "s: holds more data than its size allows"),

@@ -153,9 +153,70 @@ TEST_CASE("propose_map: halsampler names nothing: no role is guessed") {
     CHECK_THROWS_AS(read_import_map(bare.map().dump(), "guess"), bad_input);
 }
 
-TEST_CASE("propose_map: other files are of no known program") {
-    for (const char* text :
-         {"", "t_s,x_pos_m,x_cmd_V\n0,0,0\n", "time,position,torque\n0,1,2\n", "Name\tValue\na\t1\n",
-          "Names and numbers\n1 2 3\n", "12\n13\n", "time,\"axis0.pos_estimate\n", "1 2\n1 2 3\n"})
+TEST_CASE("propose_map: other files are of no known program, and what is no table has no columns") {
+    for (const char* text : {"t_s,x_pos_m,x_cmd_V\n0,0,0\n", "time,position,torque\n0,1,2\n",
+                             "Names and numbers\n1 2 3\n", "1 2\n1 2 3\n"}) {
         CHECK_MESSAGE(propose_map(text, "in").tool.empty(), text);
+        CHECK_MESSAGE(!propose_map(text, "in").columns.empty(), text);
+    }
+    for (const char* text : {"", "Name\tValue\na\t1\n", "12\n13\n", "time,\"axis0.pos_estimate\n"})
+        CHECK_MESSAGE(propose_map(text, "in").columns.empty(), text);
+}
+
+TEST_CASE("propose_map: any other table by the words and units of its columns' names") {
+    const std::string text = "recorded by hand\nTime (ms);Soll [mm];Ist [mm];Motor Current (A);temp\n"
+                             "0;1,5;1,25;0,5;20\n1;1,75;1,5;0,5;20\n2;2;1,75;0,5;20\n";
+    const auto p = propose_map(text, "a.csv");
+    CHECK(p.tool.empty());
+    CHECK(p.columns[0].time);
+    CHECK(of_role(p, "x", "reference")->name == "Soll [mm]");
+    CHECK(of_role(p, "x", "position")->name == "Ist [mm]");
+    CHECK(of_role(p, "x", "command")->name == "Motor Current (A)");
+    CHECK(p.columns[4].role.empty());
+    REQUIRE(p.open.size() == 1); // nobody knows where a current was taken
+    CHECK(is_open(p, "whether Motor Current (A) is asked by the controller, or was measured"));
+    const auto log = import_log(read_import_map(p.map().dump(), "guess"), text, "a.csv").log;
+    CHECK(log.sample_period_s == doctest::Approx(1e-3));
+    CHECK(log.axes.at(0).reference.at(1) == doctest::Approx(1.75e-3));
+    CHECK(log.axes.at(0).position.at(2) == doctest::Approx(1.75e-3));
+    CHECK(log.axes.at(0).command.at(0) == doctest::Approx(0.5));
+}
+
+TEST_CASE("propose_map: a table of several axes, its units in a line of their own") {
+    const auto p = propose_map("t,q1_ref,q1,q2_ref,q2,tau1,tau_act_2,q1Error\n"
+                               "[s],[rad],[rad],[rad],[rad],[Nm],[Nm],[rad]\n0,0,0,0,0,0,0,0\n",
+                               "arm.csv");
+    CHECK(of_role(p, "q1", "reference")->name == "q1_ref");
+    CHECK(of_role(p, "q2", "position")->unit == "rad");
+    CHECK(of_role(p, "q1", "command") == nullptr); // "1" is no axis that a position has
+    CHECK(is_open(p, "which column is the command of q1"));
+    CHECK(p.columns[7].role.empty());
+}
+
+TEST_CASE("propose_map: a table whose columns say too little or too much leaves it to a person") {
+    const auto twice = propose_map("time_s,motor position (deg),load position (deg),u\n0,1,2,3\n", "a.csv");
+    CHECK(of_role(twice, "motor", "position")->unit == "deg"); // two axes, as far as the names say
+    CHECK(of_role(twice, "load", "position") != nullptr);
+    CHECK(is_open(twice, "which column is the command of motor"));
+    const auto alike = propose_map("time_s,angle (rad),encoder (rad),Voltage (V)\n0,1,2,3\n", "a.csv");
+    CHECK(is_open(alike, "angle (rad) and encoder (rad) may both be the position of x"));
+    CHECK(of_role(alike, "x", "position") == nullptr);
+    const auto counts = propose_map("t [s],Position [counts],PWM,T [degC]\n0,1,2,3\n", "a.csv");
+    CHECK(is_open(counts, "the unit of Position [counts]"));
+    CHECK(is_open(counts, "the unit of PWM"));
+    CHECK(counts.columns[3].role.empty());
+    const auto bare = propose_map("0.1,0.2,3\n0.1,0.3,4\n", "a.csv");
+    CHECK(is_open(bare, "they go by number"));
+    CHECK(is_open(bare, "the column of the time"));
+    CHECK(bare.source_of(bare.columns[1]).at("column") == 2);
+    CHECK_THROWS_AS(read_import_map(bare.map().dump(), "guess"), bad_input);
+    // A bus has a voltage of its own, a column that is there twice goes by its number, a day's time is a stamp.
+    const auto drive = propose_map("timestamp,pos [turn],pos [turn],vbus [V],target_speed [rpm]\n"
+                                   "12:00:00.001,0,0,24,5\n",
+                                   "a.csv");
+    CHECK(drive.columns[0].time);
+    CHECK(is_open(drive, "may both be the position of x"));
+    CHECK(of_role(drive, "x", "supply") != nullptr);
+    CHECK(of_role(drive, "x", "reference_velocity")->unit == "rpm");
+    CHECK(drive.source_of(drive.columns[2]).at("column") == 3);
 }

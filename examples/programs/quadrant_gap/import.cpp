@@ -54,14 +54,15 @@ void propose(const import_options& o) {
         throw bad_input("--propose", "takes one log and the map to write");
     const auto proposed = propose_map(
         text_of_table_file(quadrant::diagnosis::detail::read_whole(std::filesystem::path(in)), in), in);
-    if (proposed.tool.empty())
-        throw bad_input(in,
-                        "is not as ODrive, TwinCAT Scope, halscope or halsampler write: begin with a map of "
-                        "examples/import");
+    if (proposed.columns.empty())
+        throw bad_input(in, "is no table: none of its first 60 lines is a row of numbers. Begin with a map of "
+                            "examples/import");
     write_output(out, proposed.map().dump(2) + "\n");
     if (o.say.quiet) return;
-    std::fprintf(paths.words(), "%s: a map of what %s wrote: %s\n", out.c_str(), proposed.tool.c_str(),
-                 proposed.said().c_str());
+    const std::string by = proposed.tool.empty() ? "the names of the columns say" : proposed.tool + " wrote";
+    const std::string said = proposed.said();
+    std::fprintf(paths.words(), "%s: a map of what %s: %s\n", out.c_str(), by.c_str(),
+                 said.empty() ? "nothing" : said.c_str());
     for (const auto& note : proposed.notes) std::fprintf(paths.words(), "Note: %s.\n", note.c_str());
     for (const auto& open : proposed.open) std::fprintf(paths.words(), "To put in: %s.\n", open.c_str());
 }
@@ -121,8 +122,8 @@ void add_import(CLI::App& app) {
         "have our names, in any unit (t_ms, x_pos_mm), or those of ODrive");
     command->add_flag(
         "--propose", o->propose,
-        "IN MAP: write a map with what the header of ODrive, TwinCAT Scope, halscope or halsampler "
-        "says; put in what is \"?\"");
+        "IN MAP: write a map with what the header of ODrive, TwinCAT Scope, halscope or halsampler, or the "
+        "names of any other table's columns say; put in what is \"?\"");
     command
         ->add_option(
             "FILES", o->files,

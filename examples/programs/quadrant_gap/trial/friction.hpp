@@ -30,11 +30,11 @@ inline double way_to_63_percent(const std::vector<double>& weights, const std::v
 }
 
 /// The part of friction with memory. `level` is what it slips at now, `stiff_level` what its stiffness belongs
-/// to.
+/// to: that of the largest `load` [N or N m], which the friction grows with.
 class contact {
 public:
-    contact(const friction_truth& f, double mass)
-        : f_(f), stiff_level_(std::max(f.coulomb, f.level_at_rest)),
+    contact(const friction_truth& f, double mass, double load = 0)
+        : f_(f), stiff_level_(std::max(f.coulomb, f.level_at_rest) + f.load * load),
           damping_(2 * f.damping * std::sqrt(std::max(0.0, stiff_level_ / f.length) * mass)) {
         if (f.law == contact_law::maxwell_slip) {
             scale_ = f.length / way_to_63_percent(f.weights, f.ways);

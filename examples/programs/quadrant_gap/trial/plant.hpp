@@ -110,7 +110,7 @@ private:
 class mechanics {
 public:
     mechanics(const axis_truth& a, double seconds)
-        : a_(a), friction_(a.friction, a.mechanics.mass), unknown_(a.unknown, seconds) {}
+        : a_(a), friction_(a.friction, a.mechanics.mass, a.mechanics.weight()), unknown_(a.unknown, seconds) {}
     /// One fine step under a motor force; the other axis' acceleration couples in. Laws of effects may change
     /// the friction level, relatively.
     void step(double motor, double t, double h, double other_acceleration, double more_friction = 0) {

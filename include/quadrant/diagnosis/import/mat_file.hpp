@@ -199,7 +199,10 @@ private:
             if (length.type != 5 || each == 0)
                 refuse(length.at,
                        fmt::format("{}: the length of the names of its fields is no number", v.name));
-            for (std::size_t k = 0; k + each <= names.size; k += each)
+            if (names.size % each != 0)
+                refuse(names.at, fmt::format("{}: the names of its fields have {} bytes, {} each", v.name,
+                                             names.size, each));
+            for (std::size_t k = 0; k < names.size; k += each)
                 fields.push_back("." + text_at(names.at + k, each));
         } else {
             fields.emplace_back();

@@ -94,7 +94,8 @@ inline import_map map_of_header(std::string_view text, std::string_view file) {
         for (const auto& cell : cells)
             if (double number = 0; !cell.text.empty() && lines.parse(cell.text, number))
                 names.emplace_back(cell.text);
-        return ": say with --map which column is what" + (names.empty() ? "" : "; there are " + some_of(names));
+        return ": say with --map which column is what (--propose FILE MAP.json begins a map)" +
+               (names.empty() ? "" : "; there are " + some_of(names));
     };
     if (!out.files[0].time) lines.refuse(0, "no column t_s (or t_ms, t_us, \"time [ms]\")" + instead());
     if (out.axes.empty())

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../text/axis_name.hpp"
+#include "any_table.hpp"
 #include "halscope_file.hpp"
 #include "twincat_header.hpp"
 
@@ -106,11 +107,13 @@ inline bool propose_halsampler(proposed_map& out, std::string_view text, std::st
 
 } // namespace detail
 
-/// What the first lines of a file say of its columns, where a program wrote it that we know. No role is guessed
-/// from numbers: a column whose name does not say what it is stays open.
+/// What the first lines of a file say of its columns: of a program that we know as it writes them, of any other
+/// table (`tool` is empty then) by the words of the names. No role is guessed from numbers: a column whose name
+/// does not say what it is stays open. No columns: this is no table.
 inline proposed_map propose_map(std::string_view text, std::string_view file) {
-    for (const auto propose : {detail::propose_odrive, detail::twincat_header::propose,
-                               detail::propose_halscope, detail::propose_halsampler}) {
+    for (const auto propose :
+         {detail::propose_odrive, detail::twincat_header::propose, detail::propose_halscope,
+          detail::propose_halsampler, detail::any_table::propose}) {
         proposed_map out;
         try {
             if (propose(out, text, file)) return out;

@@ -40,7 +40,9 @@ QUADRANT_DIAGNOSIS_DECL void axis_case::leave_out_what_the_holdout_denies() {
     while (best().effects.size() > 1 && second_log(best()).force > machine && !models.over()) {
         const auto each = models.without_each(best(), best().effects);
         const auto left = [this](const candidate& m) { return second_log(m).force; };
-        const auto least = std::ranges::min_element(each, {}, left);
+        const auto least =
+            std::min_element(each.begin(), each.end(),
+                             [&](const candidate& a, const candidate& b) { return left(a) < left(b); });
         if (!(left(*least) < machine)) return;
         denied_.push_back(best().effects[static_cast<std::size_t>(least - each.begin())]);
         follow(models.path_to(*least));
