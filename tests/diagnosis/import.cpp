@@ -171,7 +171,8 @@ TEST_CASE("import: what is wrong in the map is told by its key") {
     CHECK(of_map(changed("/time", {{"period_s", 0}})) == "map.json: time.period_s: must be a number > 0");
     CHECK(of_map(without("header")) == "accepted"); // the first line has the names
     CHECK(of_map(R"({"schema": "quadrant.import/1", "files": [{"time": {"column": "Zeit"}}], "axes": {}})") ==
-          "map.json: files[0].time.column: names a column, but the map has no header line: give its number");
+          "map.json: files[0].time.column: names a column, but the map has no header line: give its number, or "
+          "\"header\": 1 where the first line has the names, as of a MAT-file");
     CHECK(of_map(without("axes")) == "map.json: axes: is missing");
     CHECK(of_map("[]") == "map.json: must be an object");
 }

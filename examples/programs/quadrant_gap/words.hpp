@@ -160,18 +160,25 @@ inline std::string sentence_without_a_claim(const axis_result& a, const cause* s
                        a.name, before, unit, floor, hint);
 }
 
-/// What is to be said of a gap inside the tolerances that calibration does not close.
+/// What calibration does to a gap inside the tolerances, in words.
 inline std::string left_by_calibration(const axis_result& a) {
     constexpr double closed = 1.5; // of the floor
     const bool stops = std::any_of(a.calibrated.begin(), a.calibrated.end(),
                                    [](const parameter_estimate& p) { return p.on_bound; });
     if (a.positions_only || !(a.gap_after.force_rms_N > closed * a.gap.noise_floor_force_rms_N))
-        return stops ? "; some of them stop at the end of their tolerance and may lie beyond it (see the notes)"
-                     : ", nothing is missing";
+        return stops
+                   ? "calibrate its values; some of them stop at the end of their tolerance and may lie beyond "
+                     "it (see the notes)"
+                   : "calibrate its values, nothing is missing";
+    constexpr double nothing = 0.9; // of the gap, that is taken off
+    const bool helps = a.gap_after.force_rms_N < nothing * a.gap.force_rms_N;
     return fmt::format(
-        "; that leaves {}, by which machines inside these tolerances may differ: a cause shows once "
-        "mass, force constant and friction are known better",
-        quantity(a.gap_after.force_rms_N, "N"));
+        "{}: a cause shows once mass, force constant and friction are known better",
+        helps
+            ? fmt::format(
+                  "calibrate its values; that leaves {}, by which machines inside these tolerances may differ",
+                  quantity(a.gap_after.force_rms_N, "N"))
+            : "calibrating its values takes little of it off, but machines within them may differ by as much");
 }
 
 inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const axis_result& a) {
@@ -187,7 +194,7 @@ inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const ax
                            a.name, gap, before, floor);
     if (a.verdict == verdict::within_tolerance)
         return fmt::format("The {} of axis {}, {} (floor {}), lies within the tolerances of the machine file: "
-                           "calibrate its values{}.",
+                           "{}.",
                            gap, a.name, before, floor, left_by_calibration(a));
     std::vector<std::string> missing, wrong;
     std::string added; // to a command: the simulation lacks nothing

@@ -64,7 +64,8 @@ public:
         if (a_.command_unit.empty() || is_set_point(a_.command_unit)) return out;
         if (!c_.sign_is_known()) {
             out.push_back(fmt::format(
-                "axis {}: the motion is too slow to check the command by the acceleration", a_.name));
+                "axis {}: the acceleration shows too little in the command to check its sign and size by it",
+                a_.name));
             return out;
         }
         const double mass = c_.command_per_acceleration * constant_;

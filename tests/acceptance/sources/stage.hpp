@@ -25,23 +25,6 @@ inline three_phase_drive<>::parameters drive() {
             .steps = 20};
 }
 
-/// exp(-v / out) nearest to the machine's exp(-(v / vs)^2), by least squares over five vs: a machine file has
-/// no other.
-inline double nearest_stribeck_velocity(double vs) {
-    double best = HUGE_VAL, out = vs;
-    for (int i = 1; i <= 400; ++i) {
-        const double candidate = vs * i / 100;
-        double squares = 0;
-        for (int k = 0; k <= 200; ++k) {
-            const double v = 5 * vs * k / 200;
-            const double off = std::exp(-v / candidate) - std::exp(-v * v / (vs * vs));
-            squares += off * off;
-        }
-        if (squares < best) best = squares, out = candidate;
-    }
-    return out;
-}
-
 inline diagnosis::axis_description described(bool three_phases) {
     const stage::machine& m = stage::real;
     diagnosis::axis_description d;
@@ -52,7 +35,8 @@ inline diagnosis::axis_description described(bool three_phases) {
     d.plant.viscous_N_s_per_m = m.viscous;
     d.plant.coulomb_N = m.coulomb;
     d.plant.static_N = m.static_level;
-    d.plant.stribeck_velocity_m_per_s = nearest_stribeck_velocity(m.stribeck);
+    d.plant.stribeck_velocity_m_per_s = m.stribeck;
+    d.plant.stribeck_exponent = 2;
     d.plant.presliding_length_m = m.static_level / m.stiffness; // at rest a bristle approaches Fs exponentially
     d.plant.presliding_damping_s = m.damping / m.stiffness;
     d.encoder.resolution_m = 1e-6;

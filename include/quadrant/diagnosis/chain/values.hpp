@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../../base/version.hpp"
+#include "../effect/described_numbers.hpp"
 #include "../result/result.hpp"
 #include "links.hpp"
 #include "search.hpp"

@@ -5,6 +5,9 @@
 #include "fit.hpp"
 #include "scales.hpp"
 
+#include <utility>
+#include <vector>
+
 namespace quadrant::inline v0::diagnosis {
 
 /// One number of a regression and its standard deviation between parts of the record.

@@ -39,22 +39,61 @@ QUADRANT_DIAGNOSIS_DECL double regression_band(const axis_log& log, double perio
     return std::min(band, 3 * slowest);
 }
 
-/// What a regression explains the command by, and the command, all behind the same low-pass.
-struct regression_signals {
-    regression_signals(const axis_log& log, double band_Hz, double period)
-        : v(derivative(zero_phase(log.position, band_Hz, period), period)), a(derivative(v, period)),
-          u(zero_phase(log.command, band_Hz, period)), slope(derivative(u, period)),
-          curve(derivative(slope, period)) {
-        const auto filtered = [&](const std::vector<double>& of, auto term) {
-            std::vector<double> x;
-            for (const double z : of) x.push_back(term(z));
-            return zero_phase(x, band_Hz, period);
-        };
-        direction = filtered(v, [](double z) { return z > 0 ? 1.0 : z < 0 ? -1.0 : 0.0; });
-        sine = filtered(log.position, [](double z) { return std::sin(z); });
-        cosine = filtered(log.position, [](double z) { return std::cos(z); });
+/// Pieces of a record between gaps: rows from, rows to. A few rows in a row that do not count are no gap, and
+/// what is too short behind a low-pass is no piece.
+inline std::vector<std::pair<std::size_t, std::size_t>> pieces_between_gaps(const axis_log& log, double band_Hz,
+                                                                            double period) {
+    const std::size_t n = log.position.size();
+    const double few = std::max(2.0, 0.25 / (band_Hz * period)), least = 1 / (band_Hz * period);
+    std::vector<std::pair<std::size_t, std::size_t>> out;
+    const auto add = [&](std::size_t from, std::size_t to) {
+        if (to > from && static_cast<double>(to - from) > least) out.emplace_back(from, to);
+    };
+    std::size_t from = 0, counts = 0; // the row behind the last one that counts
+    for (std::size_t k = 0; k < n; ++k) {
+        if (!log.left_out.empty() && log.left_out[k]) continue;
+        if (static_cast<double>(k - counts) > few) {
+            add(from, counts);
+            from = k;
+        }
+        counts = k + 1;
     }
-    std::vector<double> v, a, u, slope, curve, direction{}, sine{}, cosine{};
+    add(from, counts);
+    return out;
+}
+
+/// What a regression explains the command by, and the command, all behind the same low-pass; 0 in gaps.
+struct regression_signals {
+    regression_signals(const axis_log& log, double band_Hz, double period) {
+        for (auto* each : {&v, &a, &u, &slope, &curve, &direction, &sine, &cosine})
+            each->assign(log.position.size(), 0.0);
+        for (const auto& [from, to] : pieces_between_gaps(log, band_Hz, period)) {
+            const auto piece = [&, first = from, last = to](const std::vector<double>& x) {
+                return std::vector(x.begin() + static_cast<std::ptrdiff_t>(first),
+                                   x.begin() + static_cast<std::ptrdiff_t>(last));
+            };
+            const auto put = [&, first = from](std::vector<double>& to_all, const std::vector<double>& x) {
+                std::copy(x.begin(), x.end(), to_all.begin() + static_cast<std::ptrdiff_t>(first));
+            };
+            const auto filtered = [&](const std::vector<double>& of, auto term) {
+                std::vector<double> x;
+                for (const double z : of) x.push_back(term(z));
+                return zero_phase(x, band_Hz, period);
+            };
+            const std::vector<double> position = piece(log.position), command = piece(log.command);
+            const auto speed = derivative(zero_phase(position, band_Hz, period), period);
+            const auto asked = zero_phase(command, band_Hz, period), rise = derivative(asked, period);
+            put(v, speed);
+            put(a, derivative(speed, period));
+            put(u, asked);
+            put(slope, rise);
+            put(curve, derivative(rise, period));
+            put(direction, filtered(speed, [](double z) { return z > 0 ? 1.0 : z < 0 ? -1.0 : 0.0; }));
+            put(sine, filtered(position, [](double z) { return std::sin(z); }));
+            put(cosine, filtered(position, [](double z) { return std::cos(z); }));
+        }
+    }
+    std::vector<double> v{}, a{}, u{}, slope{}, curve{}, direction{}, sine{}, cosine{};
 };
 
 inline double largest(const std::vector<double>& x) {

@@ -175,10 +175,10 @@ private:
             if (word & 0x0800)
                 refuse(whole.at, fmt::format("{}: is complex: save its real and imaginary part apart", v.name));
             read_numbers(v);
-            if (v.values.size() > 1) variables_.push_back(std::move(v));
         }
         if (at_ > behind) refuse(whole.at, fmt::format("{}: holds more data than its size allows", v.name));
         at_ = behind;
+        if (v.values.size() > 1) variables_.push_back(std::move(v));
     }
 
     /// Text up to its end mark, as the head of a column.

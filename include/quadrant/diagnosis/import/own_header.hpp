@@ -64,6 +64,8 @@ inline import_map map_of_header(std::string_view text, std::string_view file) {
     out.files = {layout_of(text)};
     foreign_lines lines(out.files[0], text, file);
     if (!lines.next()) throw bad_input(file, "is empty");
+    if (text.starts_with('{') || text.starts_with("[{") || text.starts_with("[["))
+        throw bad_input(file, "is JSON, no table: write time, position and command of one test as columns (CSV)");
     const auto& cells = lines.cells();
     for (std::size_t i = 0; i < cells.size(); ++i) {
         const std::string name(cells[i].text);

@@ -120,7 +120,9 @@ private:
         if (!column.value->is_string())
             s.number = static_cast<std::size_t>(column.number(index));
         else if (!layout.named())
-            column.refuse("names a column, but the map has no header line: give its number");
+            column.refuse(
+                "names a column, but the map has no header line: give its number, or \"header\": 1 where the "
+                "first line has the names, as of a MAT-file");
         else
             s.column = column.text();
         if (const auto unit = node.find("unit"))

@@ -41,9 +41,9 @@ protected:
             place = value;
         text_.row(fmt::format("axes.{}.{}.{}", axis_, f.box, key), value, text_of(f.meaning, kind_), from);
         if (unit == f.unit && value != 0 && (std::abs(value) < f.low || std::abs(value) > f.high))
-            text_.note(
-                fmt::format("axes.{}.{}.{} = {:g} is unusual (most lie between {:g} and {:g}): is it in {}?",
-                            axis_, f.box, key, value, f.low, f.high, unit));
+            text_.note(fmt::format(
+                "axes.{}.{}.{} = {:g} is unusual (most lie between {:g} and {:g}): is it {}?", axis_, f.box,
+                key, value, f.low, f.high, unit.empty() ? "a share, 0.05 for 5 %" : "in " + unit));
     }
 
     void read_count(const axis_log& log) {

@@ -100,8 +100,8 @@ struct plant_model {
     }
     /// Infinite where the play has no masses; nor has it beside a mode [kg].
     double mass_before_the_play() const {
-        constexpr double infinite = std::numeric_limits<double>::infinity();
-        return play_has_masses() && !(mode.mass > 0) ? std::min(motor_mass, 0.99 * moving_mass()) : infinite;
+        if (!play_has_masses() || mode.mass > 0) return std::numeric_limits<double>::infinity();
+        return std::min(motor_mass, 0.99 * moving_mass());
     }
     /// Whether motor and load are bodies of their own at the play.
     bool play_has_masses() const { return motor_mass < std::numeric_limits<double>::infinity(); }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../result/result.hpp"
 #include "axis_case.hpp"
 
 namespace quadrant::inline v0::diagnosis::detail {
