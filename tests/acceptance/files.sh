@@ -137,9 +137,9 @@ refuses 'is no table: none of its first 60 lines is a row of numbers' import --p
 sed '1s/.*/Time (s),Target angle (rad),Angle (rad),Torque (Nm)/' odrive.csv >other.csv
 refuses 'no column such as x_pos_m' import other.csv l2.csv
 "$program" import --propose other.csv other.map.json | grep -q 'To put in: whether Torque (Nm) is asked'
-"$program" import --quiet --map other.map.json other.csv l2.csv
+"$program" import --quiet --map other.map.json other.csv l3.csv
 tail -n +2 odrive.csv >a.csv
-tail -n +2 l2.csv | cmp - a.csv
+tail -n +2 l3.csv | cmp - a.csv
 sed 300d "$root/examples/import/halsampler.txt" >lost.txt
 "$program" import --map "$root/examples/import/halsampler.map.json" lost.txt l.csv | grep -q '1 rows are missing in 1 places'
 sed 's/"unit": "V"/"unit": "V", "scale": -1/' "$root/examples/import/halsampler.map.json" >turned.json
