@@ -133,6 +133,8 @@ END
 tail -n +2 twincat_scope.csv >a.csv
 tail -n +2 scope.csv | cmp - a.csv
 refuses 'is no table: none of its first 60 lines is a row of numbers' import --propose said.txt l2.json
+printf '{"test": [[0, 1], [1, 2]]}\n' >sysid.json
+refuses 'is JSON, no table' import sysid.json l2.json
 # Any other table: by the words of its columns' names, and the rest is asked for.
 sed '1s/.*/Time (s),Target angle (rad),Angle (rad),Torque (Nm)/' odrive.csv >other.csv
 refuses 'no column such as x_pos_m' import other.csv l2.csv

@@ -95,6 +95,10 @@ TEST_CASE("init: what does not fit together is refused, what is unusual is asked
     auto r = request(340000);
     r.sample_period_s = 0.0005;
     CHECK(says(init_machine(r).notes, "axes.x.plant.mass_kg = 340000 is unusual"));
+    CHECK(says(init_machine(r).notes, "is it in kg?"));
+    auto loose = r;
+    loose.values["tolerance-mass"][""] = 0.5;
+    CHECK(says(init_machine(loose).notes, "is it a share, 0.05 for 5 %?"));
     r.command_unit = "N";
     CHECK(refusal(r) == "init: --force-constant contradicts a command in newtons");
     r.command_unit = "A";

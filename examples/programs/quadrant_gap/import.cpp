@@ -55,8 +55,10 @@ void propose(const import_options& o) {
     const auto proposed = propose_map(
         text_of_table_file(quadrant::diagnosis::detail::read_whole(std::filesystem::path(in)), in), in);
     if (proposed.columns.empty())
-        throw bad_input(in, "is no table: none of its first 60 lines is a row of numbers. Begin with a map of "
-                            "examples/import");
+        throw bad_input(in,
+                        fmt::format("is no table: none of its first {} lines is a row of numbers. Begin with a "
+                                    "map of examples/import",
+                                    quadrant::diagnosis::detail::most_header_lines));
     write_output(out, proposed.map().dump(2) + "\n");
     if (o.say.quiet) return;
     const std::string by = proposed.tool.empty() ? "the names of the columns say" : proposed.tool + " wrote";

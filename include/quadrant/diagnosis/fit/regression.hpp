@@ -3,6 +3,7 @@
 #include "../../base/version.hpp"
 #include "../log/log.hpp"
 #include "fit.hpp"
+#include "gap_rows.hpp"
 #include "scales.hpp"
 
 #include <utility>

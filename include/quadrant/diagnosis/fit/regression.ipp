@@ -45,20 +45,14 @@ inline std::vector<std::pair<std::size_t, std::size_t>> pieces_between_gaps(cons
                                                                             double period) {
     const std::size_t n = log.position.size();
     const double few = std::max(2.0, 0.25 / (band_Hz * period)), least = 1 / (band_Hz * period);
+    const auto gap = long_gaps(log.left_out, few, 0).gap;
     std::vector<std::pair<std::size_t, std::size_t>> out;
-    const auto add = [&](std::size_t from, std::size_t to) {
-        if (to > from && static_cast<double>(to - from) > least) out.emplace_back(from, to);
-    };
-    std::size_t from = 0, counts = 0; // the row behind the last one that counts
-    for (std::size_t k = 0; k < n; ++k) {
-        if (!log.left_out.empty() && log.left_out[k]) continue;
-        if (static_cast<double>(k - counts) > few) {
-            add(from, counts);
-            from = k;
-        }
-        counts = k + 1;
+    for (std::size_t from = 0; from < n;) {
+        std::size_t to = from;
+        while (to < n && (gap.empty() || !gap[to])) ++to;
+        if (static_cast<double>(to - from) > least) out.emplace_back(from, to);
+        from = to + 1;
     }
-    add(from, counts);
     return out;
 }
 

@@ -61,10 +61,7 @@ private:
             if (!are_units) header = number;
             (are_units ? units : names) = cells;
         }
-        const char c = layout_.separator;
-        out.layout = {{"separator", c == '\t'  ? "tab"
-                                    : c == ' ' ? "blanks"
-                                               : std::string(1, c)},
+        out.layout = {{"separator", separator_key(layout_.separator)},
                       {"decimal", std::string(1, layout_.decimal)}};
         if (header > 0) out.layout["header"] = header;
         for (std::size_t i = 0; i < columns_; ++i) add(out, names[i], bare(units[i]));
@@ -142,7 +139,6 @@ private:
                                                one_line(c.name)));
     }
 
-    static constexpr std::size_t most_header_lines = 60;
     import_map::layout layout_{};
     std::vector<std::pair<std::size_t, row>> before_{}; ///< lines in front of the rows, with their numbers
     std::size_t columns_ = 0;

@@ -68,6 +68,12 @@ private:
 
 namespace detail {
 
+/// Lines at the head of a file among which its columns are looked for.
+inline constexpr std::size_t most_header_lines = 60;
+
+/// A separator as a map says it.
+inline std::string separator_key(char c) { return c == '\t' ? "tab" : c == ' ' ? "blanks" : std::string(1, c); }
+
 /// The last part of a dotted path.
 inline std::string_view leaf_of(std::string_view path) { return path.substr(path.rfind('.') + 1); }
 

@@ -53,7 +53,7 @@ private:
             out.columns.push_back(c);
         }
         out.tool = "TwinCAT Scope";
-        out.layout = {{"separator", separator_ == '\t' ? "tab" : std::string(1, separator_)},
+        out.layout = {{"separator", separator_key(separator_)},
                       {"decimal", comma_ ? "," : "."},
                       {"header", by_symbol ? symbols_line : names_line},
                       {"end", "EOF"}};
@@ -111,7 +111,6 @@ private:
         return out;
     }
 
-    static constexpr std::size_t most_header_lines = 60;
     char separator_;
     static constexpr std::size_t filetime_digits =
         15; ///< "Full Timestamp"; else milliseconds from the first row
