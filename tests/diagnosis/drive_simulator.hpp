@@ -27,8 +27,10 @@ struct machine {
     int rows_of_a_set_point = 1;        ///< it takes a new one after so many rows
     double lost = 0;                    ///< share of the set-points that never arrive
     bool enabled_column = false;
-    double force_of_current = 0;  ///< [N/A]: the drive's current is logged, too; 0: it is not
-    bool current_is_mean = false; ///< over the row; else as the row begins
+    double force_of_current = 0;     ///< [N/A]: the drive's current is logged, too; 0: it is not
+    bool current_is_mean = false;    ///< over the row; else as the row begins
+    bool current_before = false;     ///< as the row before it ended: read before the set-point is handed over
+    double velocity_feedforward = 0; ///< of the slope of the set-points, in a position drive
     bool stock_pid =
         /// in front of a velocity drive: P, and feedforwards of backward differences, as LinuxCNC's component
         false;
@@ -66,7 +68,7 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
     std::normal_distribution<double> noise(0, 0.3 * m.count);
     std::vector<double> command, arrived; // what the drive holds from each set-point on
     std::mt19937 dice(seed + 100);
-    double x = 0, v = 0, bristle = 0, felt = 0, integral = 0, followed = 0, last = 0;
+    double x = 0, v = 0, bristle = 0, felt = 0, integral = 0, followed = 0, last = 0, force_before = 0;
     std::ostringstream out;
     out.precision(10);
     out << "t_s,q_ref_" << unit << ",q_pos_" << unit
@@ -124,9 +126,11 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
                 force = command[row];
             } else {
                 const double part = at / every - tick, before = taken(tick - 1);
-                const double asked = kind == takes::volts
-                                         ? m.velocity_per_V * taken(tick)
-                                         : m.position_gain * (before + part * (taken(tick) - before) - x);
+                const double asked =
+                    kind == takes::volts
+                        ? m.velocity_per_V * taken(tick)
+                        : m.position_gain * (before + part * (taken(tick) - before) - x) +
+                              m.velocity_feedforward * (taken(tick) - before) / (every * period);
                 const auto newest = static_cast<std::size_t>(std::max(0.0, at)); // a force is held over a row
                 const auto within = [&](double f) { return std::clamp(f, -m.force_limit, m.force_limit); };
                 felt += m.velocity_filter > h ? h / m.velocity_filter * (v - felt) : v - felt;
@@ -138,7 +142,8 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
                 followed = x;
             }
             mean_force += force / steps;
-            if (i == 0) first_force = force;
+            if (i == 0) first_force = m.current_before ? force_before : force;
+            force_before = force;
             v += h * (force - m.viscous * v - m.gravity * std::sin(x) + m.constant - m.spring * x) / m.mass;
             if (m.give > 0) {
                 const double end = std::copysign(m.give, v);

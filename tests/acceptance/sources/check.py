@@ -16,6 +16,8 @@ DEFAULT = ("table.raised.attraction.sine100", "cnc.diamond")
 NOT_YET = {
     # y, 100 mm/s, friction that reaches its level at once: the force is at its floor (0.87 N), one band is not
     "table.cascade.no_bound.sine100": "a delay 0.1 ms below the file's is claimed at 0.64, though nothing differs",
+    # LuGre's contact beside the file's single spring: 0.1 um in means of 22 ms at the reversals, where a count is 1 um
+    "stage.direct.bs3800": "unexplained, though the force gap (41 mN) lies below its floor (48 mN)",
 }
 
 

@@ -41,7 +41,16 @@ inline diagnosis::axis_description described(bool three_phases) {
     d.plant.presliding_damping_s = m.damping / m.stiffness;
     d.encoder.resolution_m = 1e-6;
     d.actuator.limit_V = 8;
-    if (three_phases) d.actuator.lag_s = 1 / (2 * std::numbers::pi * drive().bandwidth.value());
+    if (three_phases) {
+        const auto c = drive();
+        const double w = 2 * std::numbers::pi * c.bandwidth.value();
+        d.actuator.lag_s = 1 / w;
+        // Under an acceleration a the back electromotive force rises by a kf/1.5 a second. The integral of the
+        // current's controller follows such a ramp with the error i = a kf / (1.5 w R), whose force kf i the
+        // command sees as more mass.
+        d.plant.mass_kg +=
+            c.force_constant.value() * c.force_constant.value() / (1.5 * w * c.resistance.value());
+    }
     d.tolerance.given = {{"mass", 0.05},    {"force_constant", 0.05}, {"viscous", 0.05},
                          {"coulomb", 0.05}, {"static", 0.05},         {"stribeck_velocity", 0.05}};
     return d;

@@ -343,20 +343,22 @@ private:
         return out;
     }
     /// What a drive with a velocity loop gives more at the readings of its tap than on average around them,
-    /// because its set-points arrive in steps [N]; empty: nothing.
+    /// because its set-points arrive in steps [N]; empty: nothing. A bus reads the drive before or after it
+    /// hands over a set-point, in each row alike: whether a reading shows it is no matter of microseconds of
+    /// delay.
     std::vector<double> steps_at_tap(const drive_model& d) const {
         if (d.kind == drive_kind::position_servo || d.read.tap == tap_reading::row_mean) return {};
-        constexpr double moment = 1e-6; // of a row
-        const double before = d.read.tap == tap_reading::before_set_point ? moment : 0,
+        constexpr double moment = 1e-6, aside = 0.25; // of a row; in its middle no set-point comes
+        const double to = d.read.tap == tap_reading::before_set_point ? -aside : aside,
                      scale = in_volts ? d.velocity_per_V : 1;
         const auto points = follows(d, parts);
         set_point_clock clock(d, set_points_of(d), period, begins);
         std::vector<double> out(measured.size());
         for (std::size_t k = 0; k < out.size(); ++k) {
             const double row = static_cast<double>(k), part = std::max(0.0, row * parts - 0.5);
-            const auto now = clock.between(row - before, row - before + moment);
-            const double step = now.value - between(points->value, part),
-                         turn = now.velocity / period - between(points->velocity, part);
+            const auto beside = clock.between(row + to, row + to + moment);
+            const double step = beside.value - to * beside.velocity - between(points->value, part),
+                         turn = beside.velocity / period - between(points->velocity, part);
             out[k] = d.velocity_gain * (d.kind == drive_kind::velocity
                                             ? scale * step
                                             : d.position_gain * step + d.velocity_feedforward * turn);
