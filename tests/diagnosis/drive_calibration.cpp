@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: BSL-1.0
 // Calibration of machines whose drive closes loops of its own: delay and gains nearly stand for one another, so
 // that the best numbers lie in a long narrow valley (drive_simulator.hpp).
-#include "drive_simulator.hpp"
+#include "position_drive.hpp"
 
 #include <doctest/doctest.h>
-#include <nlohmann/json.hpp>
-#include <quadrant/diagnosis/diagnose.hpp>
 #include <quadrant/diagnosis/fit/for_machine.hpp>
 #include <quadrant/diagnosis/fit/with_drives.hpp>
-#include <quadrant/diagnosis/read_log.hpp>
-#include <quadrant/diagnosis/read_machine.hpp>
 #include <quadrant/diagnosis/which/calibration.hpp>
 
 using namespace quadrant::diagnosis;
-using drive_simulator::takes;
 
 namespace {
 
@@ -39,39 +34,21 @@ numbers off_by(const numbers& n, const numbers& ratio) {
             n.delay * ratio.delay};
 }
 machine_description file_of(const numbers& n, const numbers& tolerance, double count, int rows_of_a_set_point) {
-    nlohmann::json q;
-    q["plant"] = {{"mass_kg", n.mass}, {"viscous_N_s_per_m", n.viscous}, {"coulomb_N", n.coulomb}};
-    q["tolerance"] = {{"mass", tolerance.mass},
-                      {"viscous", tolerance.viscous},
-                      {"coulomb", tolerance.coulomb},
-                      {"velocity_gain", tolerance.gain},
-                      {"velocity_integral", tolerance.integral},
-                      {"position_gain", tolerance.position_gain},
-                      {"command_delay", tolerance.delay}};
-    q["encoder"] = {{"resolution_m", count}};
-    q["drive"] = {{"kind", "position"},
-                  {"interpolation", "linear"},
-                  {"velocity_gain_N_s_per_m", n.gain},
-                  {"velocity_integral_N_per_m", n.integral},
-                  {"position_gain_per_s", n.position_gain},
-                  {"command_delay_s", n.delay},
-                  {"set_point_period_s", rows_of_a_set_point * 1e-3}};
-    const nlohmann::json file{
-        {"schema", "quadrant.machine/1"}, {"sample_period_s", 1e-3}, {"axes", {{"q", q}}}};
-    return read_machine(file.dump(), "machine.json");
+    auto axis = position_drive::axis_of(machine_of(n, count, rows_of_a_set_point), 1e-3);
+    axis["tolerance"] = {{"mass", tolerance.mass},
+                         {"viscous", tolerance.viscous},
+                         {"coulomb", tolerance.coulomb},
+                         {"velocity_gain", tolerance.gain},
+                         {"velocity_integral", tolerance.integral},
+                         {"position_gain", tolerance.position_gain},
+                         {"command_delay", tolerance.delay}};
+    return position_drive::file_of(axis, 1e-3);
 }
 machine_log log_of(const drive_simulator::machine& m, double pace, unsigned seed) {
-    std::istringstream text(drive_simulator::log(takes::set_points, m, 1e-3, pace, seed, "m"));
-    return read_log(text, "log.csv");
-}
-diagnosis_result found(const machine_description& machine, const machine_log& log, const machine_log& holdout) {
-    rules one;
-    one.threads = 1;
-    return diagnose(
-        machine, log, &holdout, [](const std::string&) {}, one);
+    return position_drive::recorded(m, 1e-3, pace, seed);
 }
 void not_blamed(const machine_description& machine, const machine_log& log, const machine_log& holdout) {
-    const auto d = found(machine, log, holdout);
+    const auto d = position_drive::diagnosed(machine, log, holdout);
     CHECK(d.verdict <= verdict::within_tolerance);
     for (const cause& c : d.causes) CHECK_MESSAGE(c.group_probability < 0.5, c.effect);
 }
@@ -124,7 +101,7 @@ TEST_CASE(
     auto machine = file_of(described, tolerance, 1e-6, 1);
     machine.excluded_effects = {"command_delay"};
     const machine_log log = log_of(late, 1, 1), holdout = log_of(late, 0.8, 2);
-    const auto d = found(machine, log, holdout);
+    const auto d = position_drive::diagnosed(machine, log, holdout);
     CHECK(d.verdict > verdict::within_tolerance);
     const auto check = [&](const std::vector<parameter_estimate>& found) {
         for (const auto& p : found) {

@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: BSL-1.0
 // When the set-points of a position drive arrive, and whether they do (drive_simulator.hpp).
 #include "claims.hpp"
-#include "drive_simulator.hpp"
+#include "position_drive.hpp"
 #include "shared.hpp"
 
 #include <doctest/doctest.h>
-#include <nlohmann/json.hpp>
-#include <quadrant/diagnosis/diagnose.hpp>
 #include <quadrant/diagnosis/fit/for_machine.hpp>
 #include <quadrant/diagnosis/fit/with_drives.hpp>
-#include <quadrant/diagnosis/read_log.hpp>
-#include <quadrant/diagnosis/read_machine.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 using namespace quadrant::diagnosis;
 
@@ -29,37 +24,17 @@ const drive_simulator::machine real{.mass = 20,
                                     .delay = 2e-3};
 
 machine_description described(const drive_simulator::machine& m) {
-    nlohmann::json q;
-    q["plant"] = {{"mass_kg", m.mass}, {"viscous_N_s_per_m", m.viscous}, {"coulomb_N", m.coulomb}};
-    if (m.force_of_current > 0) q["plant"]["force_constant_N_per_A"] = m.force_of_current;
-    q["tolerance"] = {{"mass", 0.03},          {"viscous", 0.1},        {"coulomb", 0.08},
-                      {"velocity_gain", 0.05}, {"position_gain", 0.03}, {"command_delay", 0.1}};
-    q["encoder"] = {{"resolution_m", m.count}};
-    q["drive"] = {{"kind", "position"},
-                  {"interpolation", "linear"},
-                  {"velocity_gain_N_s_per_m", m.gain},
-                  {"position_gain_per_s", m.position_gain},
-                  {"command_delay_s", m.delay},
-                  {"set_point_period_s", m.rows_of_a_set_point * period}};
-    if (m.integral > 0) {
-        q["drive"]["velocity_integral_N_per_m"] = m.integral;
-        q["tolerance"]["velocity_integral"] = 0.05;
-    }
-    const nlohmann::json file{
-        {"schema", "quadrant.machine/1"}, {"sample_period_s", period}, {"axes", {{"q", q}}}};
-    return read_machine(file.dump(), "machine.json");
+    auto axis = position_drive::axis_of(m, period);
+    axis["tolerance"] = {{"mass", 0.03},          {"viscous", 0.1},        {"coulomb", 0.08},
+                         {"velocity_gain", 0.05}, {"position_gain", 0.03}, {"command_delay", 0.1}};
+    if (m.integral > 0) axis["tolerance"]["velocity_integral"] = 0.05;
+    return position_drive::file_of(axis, period);
 }
 machine_log recorded(const drive_simulator::machine& m, double pace = 1, unsigned seed = 1) {
-    std::istringstream text(
-        drive_simulator::log(drive_simulator::takes::set_points, m, period, pace, seed, "m"));
-    return read_log(text, "log.csv");
+    return position_drive::recorded(m, period, pace, seed);
 }
 diagnosis_result diagnosed(const machine_description& machine, const drive_simulator::machine& m) {
-    const machine_log log = recorded(m), holdout = recorded(m, 0.8, 2);
-    rules one;
-    one.threads = 1;
-    return diagnose(
-        machine, log, &holdout, [](const std::string&) {}, one);
+    return position_drive::diagnosed(machine, recorded(m), recorded(m, 0.8, 2));
 }
 } // namespace
 

@@ -348,7 +348,8 @@ private:
     /// delay.
     std::vector<double> steps_at_tap(const drive_model& d) const {
         if (d.kind == drive_kind::position_servo || d.read.tap == tap_reading::row_mean) return {};
-        constexpr double moment = 1e-6, aside = 0.25; // of a row; in its middle no set-point comes
+        // Of a row; as far from a reading a set-point may come and still be the one that comes with it.
+        constexpr double moment = 1e-6, aside = 0.25;
         const double to = d.read.tap == tap_reading::before_set_point ? -aside : aside,
                      scale = in_volts ? d.velocity_per_V : 1;
         const auto points = follows(d, parts);
@@ -356,9 +357,9 @@ private:
         std::vector<double> out(measured.size());
         for (std::size_t k = 0; k < out.size(); ++k) {
             const double row = static_cast<double>(k), part = std::max(0.0, row * parts - 0.5);
-            const auto beside = clock.between(row + to, row + to + moment);
-            const double step = beside.value - to * beside.velocity - between(points->value, part),
-                         turn = beside.velocity / period - between(points->velocity, part);
+            const auto there = clock.between(row + to, row + to + moment);
+            const double step = there.value - to * there.velocity - between(points->value, part),
+                         turn = there.velocity / period - between(points->velocity, part);
             out[k] = d.velocity_gain * (d.kind == drive_kind::velocity
                                             ? scale * step
                                             : d.position_gain * step + d.velocity_feedforward * turn);
