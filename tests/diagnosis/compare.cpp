@@ -8,6 +8,9 @@
 
 #include <doctest/doctest.h>
 
+#include <set>
+#include <string>
+
 using namespace quadrant::diagnosis;
 
 namespace {
@@ -75,6 +78,26 @@ TEST_CASE("compare: a log at another rate is brought to the rate of the machine"
     CHECK(found.differences.empty());
     CHECK(std::any_of(found.notes.begin(), found.notes.end(),
                       [](const std::string& note) { return note.find("resampled") != note.npos; }));
+}
+
+TEST_CASE("compare: what one log cannot separate is not separated by the other, which lacks it" *
+          doctest::test_suite("all")) {
+    const auto description = workshop::described(workshop::machine{});
+    workshop::machine slow; // in its current loop: within a row as good as late
+    slow.lag = 0.4 * workshop::period;
+    const auto plain = log_of(workshop::machine{}, workshop::strokes, 1), late = log_of(slow, 8.15, 2);
+    for (const bool turned : {false, true}) {
+        CAPTURE(turned);
+        const auto found = turned ? compare(description, late, plain) : compare(description, plain, late);
+        const auto& own = turned ? found.first : found.second;
+        REQUIRE(own.causes.size() == 1);
+        REQUIRE(own.causes[0].confusable_with.size() == 1);
+        REQUIRE(found.differences.size() == 1);
+        const difference& d = found.differences[0];
+        const std::set names{d.effect, d.confusable_with.at(0)};
+        CHECK(names == std::set<std::string>{"time_delay", "actuator_lag"});
+        CHECK(names == std::set{own.causes[0].effect, own.causes[0].confusable_with[0]});
+    }
 }
 
 TEST_CASE("compare: without a machine file the first log describes the machine, in units of its command" *

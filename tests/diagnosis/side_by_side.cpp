@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "workshop.hpp"
 
+#include <quadrant/diagnosis/effect/effect.hpp>
+#include <quadrant/diagnosis/effect/effect_list.hpp>
 #include <quadrant/diagnosis/fit/fit.hpp>
 #include <quadrant/diagnosis/fit/record.hpp>
+#include <quadrant/diagnosis/which/candidate.hpp>
+#include <quadrant/diagnosis/which/promising.hpp>
 
 #include <doctest/doctest.h>
 
@@ -20,6 +24,14 @@ struct heavier { // a machine of 225 kg that its file says is 180 kg
         record = prepare(log, workshop::period, workshop::count,
                          scales_of(file.axes[0].plant, log, workshop::period, workshop::count));
         plant = plant_model(file.axes[0].plant, record.scale.give());
+    }
+    parameter mass_from(double start) const {
+        return {.key = "mass_kg",
+                .of = [](plant_model& m) -> double& { return m.mass; },
+                .start = start,
+                .low = 20,
+                .high = 2000,
+                .logarithmic = true};
     }
     heavier(const heavier&) = delete;
     heavier& operator=(const heavier&) = delete;
@@ -66,13 +78,7 @@ TEST_CASE("fit: behind a step that fails all with more damping are asked for at 
     const heavier machine;
     const axis_record& record = machine.record;
     const fitter fit(record.observer, record.score);
-    const parameter mass{.key = "mass_kg",
-                         .of = [](plant_model& m) -> double& { return m.mass; },
-                         .start = machine.plant.mass,
-                         .low = 50,
-                         .high = 500,
-                         .logarithmic = true};
-    fit_course course(fit, machine.plant, {mass}, 1);
+    fit_course course(fit, machine.plant, {machine.mass_from(machine.plant.mass)}, 1);
     const std::vector<double> choices(8, 0.0);
     std::vector<plant_model> asked;
     const auto answered = [&] { // the innovations of what the course asks for
@@ -104,4 +110,75 @@ TEST_CASE("fit: behind a step that fails all with more damping are asked for at 
     CHECK(course.take(e, choices) == 5);
     CHECK(course.done());
     CHECK(course.result().plant.mass == second);
+}
+
+TEST_CASE("first looks: beside a constant force friction differs by direction as described, and no more") {
+    heavier machine;
+    axis_description& axis = machine.file.axes[0];
+    const fitter fit(machine.record.observer, machine.record.score);
+    const double give = machine.record.scale.give(), found = 0.01; // more than described, by calibration
+    for (const double described : {-0.3, 0.3}) {
+        axis.plant.coulomb_asymmetry = described;
+        candidate from;
+        from.fit.plant = plant_model(axis, give);
+        from.fit.plant.friction.coulomb_asymmetry += found;
+        from.fit.parameters = calibration(axis, give, false);
+        from.fit.x.resize(static_cast<Eigen::Index>(from.fit.parameters.size()));
+        for (std::size_t i = 0; i < from.fit.parameters.size(); ++i) {
+            const parameter& p = from.fit.parameters[i];
+            from.fit.x[static_cast<Eigen::Index>(i)] = p.to_fit(p.of(from.fit.plant));
+        }
+        const shared_slopes slopes = fit.slopes(from.fit);
+        const std::vector<double> left(machine.record.position.size(), 5.0);
+        const screening look{axis.plant,     axis.tolerance, machine.record,
+                             from.fit.plant, left,           from.fit.innovation.rows};
+        const effect& constant = *effect_named("constant_force");
+        const double start = constant.starts(look).at(0).at(0).start;
+        first_look looks(fit, from, constant, look, slopes, 1);
+        REQUIRE(looks.courses().size() == 1);
+        const fit_result& begun = looks.courses()[0].result();
+        CHECK(begun.plant.friction.coulomb_asymmetry == doctest::Approx(described));
+        CHECK(begun.plant.constant_force ==
+              doctest::Approx(start - found * begun.plant.friction.coulomb).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("first looks: of many starts the better half goes on, then two; of two both; by the same way") {
+    const heavier machine;
+    const fitter fit(machine.record.observer, machine.record.score);
+    constexpr int steps = 8;
+    const std::vector<double> masses{40, 1500, 700, 150, 60, 300, 90}, two{60, 1500};
+    const auto look = [&](double from, int iterations) { // with new slopes for each step
+        return fit_course(fit, machine.plant, {machine.mass_from(from)}, iterations, {}, 0);
+    };
+    const auto looks = [&](const std::vector<double>& from) {
+        std::vector<fit_course> out;
+        for (const double m : from) out.push_back(look(m, steps));
+        return out;
+    };
+    const auto behind = [&](double from, int iterations) {
+        fit_course alone = look(from, iterations);
+        fit.run(std::span(&alone, 1));
+        return alone.result().objective;
+    };
+    auto courses = looks(masses);
+    auto both = looks(two);
+    std::move(both.begin(), both.end(), std::back_inserter(courses));
+    detail::run_the_promising(fit, courses, std::array{masses.size(), two.size()}, steps / 4);
+
+    std::size_t whole = 0, of_half = 0, of_one = 0; // steps that they were let take: all, three, one
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+        const double objective = courses[i].result().objective;
+        CAPTURE(masses[i]);
+        CHECK(courses[i].done());
+        const auto is = [&](int iterations) {
+            return std::abs(objective - behind(masses[i], iterations)) < 1e-3;
+        };
+        is(steps) ? ++whole : is(3) ? ++of_half : is(1) ? ++of_one : 0;
+    }
+    CHECK(whole == 2);
+    CHECK(of_half == 2);
+    CHECK(of_one == 3);
+    for (std::size_t i = 0; i < two.size(); ++i)
+        CHECK(std::abs(courses[masses.size() + i].result().objective - behind(two[i], steps)) < 1e-3);
 }

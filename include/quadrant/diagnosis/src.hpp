@@ -148,6 +148,8 @@
 #include "which/looks.ipp"
 #include "which/model_fits.hpp"
 #include "which/model_fits.ipp"
+#include "which/promising.hpp"
+#include "which/promising.ipp"
 #include "which/read_off.hpp"
 #include "which/read_off.ipp"
 #include "which/rivals.hpp"

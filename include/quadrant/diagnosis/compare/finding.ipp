@@ -3,6 +3,7 @@
 #include "../which/chance.hpp"
 #include "values.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -22,6 +23,10 @@ inline difference difference_of(const direction& d, const cause& c) {
     out.first = c.parameters;
     out.second = std::move(reference);
     if (d.found_in_second) std::swap(out.first, out.second);
+    // What the log that has it cannot separate, the other log, which lacks it, cannot either.
+    auto& names = out.confusable_with;
+    for (const std::string& name : there ? there->confusable_with : std::vector<std::string>())
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     out.gap_before_force_rms_N = c.gap_before_force_rms_N;
     out.gap_after_force_rms_N = c.gap_after_force_rms_N;
     out.gap_before_position_rms_m = c.gap_before_position_rms_m;

@@ -25,14 +25,28 @@ public:
     void ask(std::vector<plant_model>& plants);
     /// Takes their innovations; returns how many it had asked for.
     std::size_t take(std::span<std::vector<double>> innovation, std::span<const double> choices);
-    bool done() const { return stage_ == stage::done; }
+    /// Whether it asks for nothing: at its end, or where it pauses.
+    bool done() const { return stage_ == stage::done || paused_; }
     fit_result& result() { return best_; }
+    /// Pauses behind this many iterations, where others are behind it or before it. It keeps no slopes there.
+    void pause_after(int iterations) {
+        pause_ = iterations;
+        paused_ = false;
+    }
+    /// Goes on to its own end.
+    void go_on() { pause_after(0); }
+    /// Ends where it is.
+    void end() {
+        stage_ = stage::done;
+        paused_ = false;
+        release();
+    }
 
 private:
     enum class stage { begin, trial, slopes, done };
 
     std::size_t took(std::span<std::vector<double>> innovation, std::span<const double> choices);
-    /// What nobody asks a finished fit for; a first look is not asked for its innovations either.
+    /// What nobody asks a fit for that stands; a first look at its end is not asked for its innovations either.
     void release();
     void take_slopes(std::span<std::vector<double>> moved);
     /// The next iteration, if there is one.
@@ -52,7 +66,7 @@ private:
 
     const fitter* fitter_;
     known_slopes known_;
-    int iterations_, chords_, iteration_ = 0, attempt_ = 0, old_ = 0;
+    int iterations_, chords_, iteration_ = 0, attempt_ = 0, old_ = 0, pause_ = 0;
     stage stage_ = stage::begin;
     fit_result best_, trial_{};
     std::vector<viewed_signal> slopes_{}; ///< of the parameters behind the known ones
@@ -60,7 +74,7 @@ private:
     std::vector<Eigen::VectorXd> tries_{}; ///< points that are asked for at once, the least damped first
     double damping_ = 1e-3, damping_before_ = 0, since_ = 0,
            gain_ = 0; // since: what was gained with these slopes
-    bool better_ = false;
+    bool better_ = false, paused_ = false;
 };
 
 } // namespace quadrant::inline v0::diagnosis

@@ -31,6 +31,7 @@ QUADRANT_DIAGNOSIS_DECL void fit_course::ask(std::vector<plant_model>& plants) {
 
 QUADRANT_DIAGNOSIS_DECL std::size_t fit_course::take(std::span<std::vector<double>> innovation,
                                                      std::span<const double> choices) {
+    if (done()) return 0;
     const std::size_t taken = took(innovation, choices);
     if (done()) release();
     return taken;
@@ -39,7 +40,7 @@ QUADRANT_DIAGNOSIS_DECL std::size_t fit_course::take(std::span<std::vector<doubl
 QUADRANT_DIAGNOSIS_DECL void fit_course::release() {
     slopes_ = {};
     trial_ = {};
-    if (known_.from) best_.innovation = {};
+    if (known_.from && !paused_) best_.innovation = {};
 }
 
 QUADRANT_DIAGNOSIS_DECL std::size_t fit_course::took(std::span<std::vector<double>> innovation,
@@ -136,8 +137,9 @@ QUADRANT_DIAGNOSIS_DECL void fit_course::conclude() {
     if ((settled && since_ < 1) || iteration_ == iterations_) {
         if (better_) fitter_->quadratics(best_, slopes_, known_, false);
         stage_ = stage::done;
-    } else if (settled || ++old_ > chords_) {
+    } else if (settled || ++old_ > chords_ || iteration_ == pause_) {
         stage_ = stage::slopes;
+        paused_ = iteration_ == pause_;
     } else {
         fitter_->quadratics(best_, slopes_, known_, false);
         next();

@@ -84,6 +84,9 @@ template <class Each> void each_channel(const fit_result& f, const scoring& s, E
 /// 1/2 ln(blocks) for each parameter that no owner knows.
 QUADRANT_DIAGNOSIS_DECL double flexibility(const fit_result& f);
 
+/// What a start of a first look has come to: a start that frees more must earn it. Less is better.
+inline double cost_of(const fit_result& f) { return f.objective + flexibility(f); }
+
 /// What rare effects must bring before they stand beside common ones: their prior odds, as a score.
 QUADRANT_DIAGNOSIS_DECL double rarity(const std::vector<const effect*>& effects);
 

@@ -165,8 +165,9 @@ inline bool gives_way_to_constant(const parameter& q, plant_model& plant, std::v
     const auto constant = std::find_if(start.begin(), start.end(),
                                        [](const parameter& p) { return p.key == "constant_force_N"; });
     if (q.key != "coulomb_asymmetry" || !(q.spread > 0) || constant == start.end()) return false;
-    const double taken = plant.friction.coulomb * std::exchange(q.of(plant), q.expected);
-    constant->start = std::clamp(constant->start - taken, constant->low, constant->high);
+    const double described = q.from_fit(q.expected), found = std::exchange(q.of(plant), described);
+    constant->start = std::clamp(constant->start - plant.friction.coulomb * (found - described), constant->low,
+                                 constant->high);
     return true;
 }
 
@@ -204,9 +205,9 @@ QUADRANT_DIAGNOSIS_DECL first_look::first_look(const fitter& fit, const candidat
 
 QUADRANT_DIAGNOSIS_DECL fit_result first_look::best() {
     fit_result best;
-    double least = std::numeric_limits<double>::infinity(); // a start that frees more must earn it
+    double least = std::numeric_limits<double>::infinity();
     for (fit_course& c : courses_)
-        if (const double cost = c.result().objective + detail::flexibility(c.result()); cost < least) {
+        if (const double cost = detail::cost_of(c.result()); cost < least) {
             least = cost;
             best = std::move(c.result());
         }

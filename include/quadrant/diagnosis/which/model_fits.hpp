@@ -3,6 +3,7 @@
 #include "../text/on_all_cores.hpp"
 #include "../text/progress.hpp"
 #include "axis_floors.hpp"
+#include "promising.hpp"
 
 #include <atomic>
 #include <deque>
@@ -25,6 +26,10 @@ protected:
     static void begin_at(candidate& c, plant_model known);
     /// How many times the looks and finalists of a long record this one affords.
     std::size_t effort() const;
+    /// From each start.
+    int steps_of_a_look() const {
+        return rules_.first_look * static_cast<int>(std::min<std::size_t>(effort(), 4));
+    }
     /// How many models a round fits to the end, at most, of those that a first look found.
     std::size_t most_fitted() const { return rules_.finalists * effort(); }
     /// A model with the numbers of the machine file as they are described. Where calibration stops at the end

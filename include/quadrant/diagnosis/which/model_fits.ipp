@@ -89,19 +89,21 @@ QUADRANT_DIAGNOSIS_DECL void model_fits::sketch_each(const candidate& from,
         if (late) return;
         std::vector<first_look> looks;
         std::vector<fit_course> courses;
-        std::vector<std::size_t> model_of; // each look
-        for (const std::size_t i : some)
+        std::vector<std::size_t> model_of, starts_of; // each look; how many of each model
+        for (const std::size_t i : some) {
+            const std::size_t before = courses.size();
             for (std::size_t j = 0; j < (begins_as_described(i) ? origins.size() : 1); ++j) {
                 model_of.push_back(i);
                 const screening look{axis_.plant,          axis_.tolerance, record_,
                                      origins[j].fit.plant, left[j],         innovation[j]};
                 looks.emplace_back(fit, origins[j], *models[i].effects.back(), look, slopes[j],
-                                   rules_.first_look * static_cast<int>(std::min<std::size_t>(effort(), 4)),
-                                   found[i]);
+                                   steps_of_a_look(), found[i]);
                 std::move(looks.back().courses().begin(), looks.back().courses().end(),
                           std::back_inserter(courses));
             }
-        fit.run(std::span(courses));
+            starts_of.push_back(courses.size() - before);
+        }
+        detail::run_the_promising(fit, courses, starts_of, steps_of_a_look());
         auto next = courses.begin();
         for (std::size_t j = 0; j < looks.size(); ++j) {
             for (fit_course& c : looks[j].courses()) c = std::move(*next++);
