@@ -48,6 +48,20 @@ TEST_CASE("below the tolerances: a friction of another law is no cause" * doctes
     }
 }
 
+TEST_CASE("below the tolerances: a suspect that nobody is told of takes nothing off") {
+    machine real;
+    const auto file = described(real);
+    auto calibrated_alone = file;
+    for (const effect* e : every_effect()) calibrated_alone.excluded_effects.emplace_back(e->name);
+    real.backlash = 1e-6;
+    const auto d = diagnosed(file, real);
+    CAPTURE(said(d));
+    REQUIRE(d.verdict == verdict::within_tolerance);
+    REQUIRE(!d.axes[0].calibrated_with_suspects.empty());
+    const auto left = [](const diagnosis_result& x) { return x.axes[0].gap_after.force_rms_N; };
+    CHECK(left(d) == doctest::Approx(left(diagnosed(calibrated_alone, real))).epsilon(0.01));
+}
+
 TEST_CASE("below the tolerances: what is left beside friction") {
     // Strokes of a fifth of a metre, as a cosine: the same speeds and ways in both directions.
     axis_record r;

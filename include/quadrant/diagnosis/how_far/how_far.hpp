@@ -42,6 +42,9 @@ private:
     std::optional<closed_loop_run> loop(const plant_model& plant,
                                         const std::optional<controller_description>& controller) const;
     static std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b);
+    /// By how much the sizes of two signals differ, block by block. A loop with a play chatters where its model
+    /// does, as much, and at other moments.
+    double apart_in_size(const std::vector<double>& a, const std::vector<double>& b) const;
     segment_energy energy(const std::vector<double>& x) const;
     estimate interval(const segment_energy& e) const;
     void compare(cause& c, const segment_energy& before, const segment_energy& after) const;

@@ -95,21 +95,42 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> how_far::loop_errors() const {
     if (case_.controller_open()) return out; // another controller ran
     std::optional<controller_description> controller;
     if (case_.axis.controller) controller = case_.mended();
+    std::optional<closed_loop_run> calm; // what the machine does without a play
     for (const candidate& model : case_.path) {
         if (model.fit.plant.loss > 0 || model.fit.plant.drive.loss > 0) return {};
         const auto run = loop(plant_of(model), controller);
         if (!run) return {};
         const std::vector<double> all(judged_.segments, 1.0);
-        const double way = energy(difference(run->position, log_.position)).rms(all);
+        const bool chatters = model.fit.plant.has_play();
+        if (!calm && !chatters) calm = run;
+        const auto apart = [&](std::vector<double> closed_loop_run::*of, const std::vector<double>& logged) {
+            const double by_row = energy(difference((*run).*of, logged)).rms(all);
+            if (!chatters || !calm) return by_row;
+            const auto &own = (*run).*of, &quiet = (*calm).*of;
+            return std::min(by_row, apart_in_size(difference(own, quiet), difference(logged, quiet)));
+        };
+        const double way = apart(&closed_loop_run::position, log_.position);
         // A drive's command that was not recorded is what its described loops make of the motion: the motion
         // stands for both. So it does for a servo's duty: read at a moment of each row, while set-points arrive
         // in steps, it is not the row's mean, by more than a gain makes of it.
         const auto* const drive = judged_.observer.drive;
         const bool recorded =
             !drive || (drive->tapped() && case_.axis.drive.kind != drive_kind::position_servo);
-        out.push_back(way * (recorded ? energy(difference(run->command, log_.command)).rms(all) : way));
+        out.push_back(way * (recorded ? apart(&closed_loop_run::command, log_.command) : way));
     }
     return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL double how_far::apart_in_size(const std::vector<double>& a,
+                                                      const std::vector<double>& b) const {
+    const std::size_t block = std::max<std::size_t>(1, judged_.score.block);
+    double sum = 0, rows = 0;
+    for (std::size_t k = judged_.score.skip; k + block <= a.size(); k += block) {
+        const auto size = [&](const std::vector<double>& x) { return rms(std::span(x).subspan(k, block)); };
+        sum += square(size(a) - size(b)) * static_cast<double>(block);
+        rows += static_cast<double>(block);
+    }
+    return rows > 0 ? std::sqrt(sum / rows) : std::numeric_limits<double>::infinity();
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<double> how_far::difference(const std::vector<double>& a,

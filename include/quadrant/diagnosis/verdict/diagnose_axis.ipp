@@ -106,6 +106,17 @@ inline void suspect_by_chance(const how_far& shrinks, axis_case& c, std::vector<
     }
 }
 
+/// How far the gap shrinks, and what that says of the axis. Suspects that nobody is told of take nothing off.
+inline void measure_and_judge(axis_result& result, const axis_case& c, const how_far& shrinks,
+                              std::vector<cause>& causes) {
+    shrinks.measure(result, causes);
+    result.verdict = judge(c, causes);
+    if (result.verdict > verdict::within_tolerance || causes.empty()) return;
+    result.signals = {};
+    std::vector<cause> none;
+    shrinks.measure(result, none);
+}
+
 QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, const progress& tell,
                                            const stages& stage, chain::two_encoders* of_transmission,
                                            const other_axes& others) {
@@ -134,10 +145,10 @@ QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, 
     tell_linked_arm(out, c, others);
     note_few_motions(out, c);
     add_read_off(causes, c);
-    shrinks.measure(result, causes);
+    measure_and_judge(result, c, shrinks, causes);
     result.calibrated = calibrated(c, c.applied(), causes);
     if (c.claims + 1 < c.path.size()) result.calibrated_with_suspects = calibrated(c, c.best(), causes);
-    const verdict behind = result.verdict = judge(c, causes);
+    const verdict behind = result.verdict;
     result.cut = c.models.cut() || !c.models.missed().empty();
     if (behind == verdict::within_tolerance && !c.at_floor())
         out.notes.push_back(
@@ -153,6 +164,7 @@ QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, 
     note_limit(out, c);
     note_denied(out, c);
     note_cancelled(out, c);
+    note_chatter(out, c, result);
     note_rows_of_delay(out, c, causes);
     note_late_velocity(out, c, causes);
     note_excluded(out, causes);

@@ -83,6 +83,17 @@ inline void note_cancelled(diagnosis_result& out, const axis_case& c) {
     }
 }
 
+/// A play with which the loop chatters as loud as its log, and comes no nearer to it row by row.
+inline void note_chatter(diagnosis_result& out, const axis_case& c, const axis_result& result) {
+    if (c.claims == 0 || !c.applied().fit.plant.has_play() ||
+        !(result.gap_after.position_rms_m > result.gap.position_rms_m))
+        return;
+    out.notes.push_back(fmt::format(
+        "axis {}: with its play the simulated loop chatters about as much as the logged one, but at other "
+        "moments: row by row its position comes no nearer.",
+        c.axis.name));
+}
+
 /// A delay that is another by whole rows: columns that were not recorded together look the same, and without a
 /// described controller nothing says which it is.
 inline void note_rows_of_delay(diagnosis_result& out, const axis_case& c, const std::vector<cause>& causes) {
