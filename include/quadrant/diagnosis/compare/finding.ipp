@@ -24,9 +24,9 @@ inline difference difference_of(const direction& d, const cause& c) {
     out.second = std::move(reference);
     if (d.found_in_second) std::swap(out.first, out.second);
     // What the log that has it cannot separate, the other log, which lacks it, cannot either.
-    auto& names = out.confusable_with;
-    for (const std::string& name : there ? there->confusable_with : std::vector<std::string>())
-        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    if (auto& names = out.confusable_with; there)
+        for (const std::string& name : there->confusable_with)
+            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     out.gap_before_force_rms_N = c.gap_before_force_rms_N;
     out.gap_after_force_rms_N = c.gap_after_force_rms_N;
     out.gap_before_position_rms_m = c.gap_before_position_rms_m;

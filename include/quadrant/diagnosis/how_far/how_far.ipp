@@ -10,6 +10,7 @@ QUADRANT_DIAGNOSIS_DECL void how_far::measure(axis_result& result, std::vector<c
                           : case_.tested_apart() ? "the hold-out log"
                           : case_.holdout        ? "the hold-out log, fitted as well"
                                                  : "held-out motion segments of the log";
+    result.signals = {};
     result.signals.residual_before = before.force;
     if (before.loop) result.signals.simulated_position_before = before.loop->position;
 
@@ -98,11 +99,10 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> how_far::loop_errors() const {
     std::optional<closed_loop_run> calm; // what the machine does without a play
     for (const candidate& model : case_.path) {
         if (model.fit.plant.loss > 0 || model.fit.plant.drive.loss > 0) return {};
-        const auto run = loop(plant_of(model), controller);
+        auto run = loop(plant_of(model), controller);
         if (!run) return {};
         const std::vector<double> all(judged_.segments, 1.0);
         const bool chatters = model.fit.plant.has_play();
-        if (!calm && !chatters) calm = run;
         const auto apart = [&](std::vector<double> closed_loop_run::*of, const std::vector<double>& logged) {
             const double by_row = energy(difference((*run).*of, logged)).rms(all);
             if (!chatters || !calm) return by_row;
@@ -117,6 +117,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> how_far::loop_errors() const {
         const bool recorded =
             !drive || (drive->tapped() && case_.axis.drive.kind != drive_kind::position_servo);
         out.push_back(way * (recorded ? apart(&closed_loop_run::command, log_.command) : way));
+        if (!calm && !chatters) calm = std::move(run);
     }
     return out;
 }

@@ -112,7 +112,6 @@ inline void measure_and_judge(axis_result& result, const axis_case& c, const how
     shrinks.measure(result, causes);
     result.verdict = judge(c, causes);
     if (result.verdict > verdict::within_tolerance || causes.empty()) return;
-    result.signals = {};
     std::vector<cause> none;
     shrinks.measure(result, none);
 }

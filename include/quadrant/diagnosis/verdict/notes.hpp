@@ -83,14 +83,14 @@ inline void note_cancelled(diagnosis_result& out, const axis_case& c) {
     }
 }
 
-/// A play with which the loop chatters as loud as its log, and comes no nearer to it row by row.
+/// A claim beside a play, with which the simulated loop comes no nearer to its log row by row.
 inline void note_chatter(diagnosis_result& out, const axis_case& c, const axis_result& result) {
     if (c.claims == 0 || !c.applied().fit.plant.has_play() ||
         !(result.gap_after.position_rms_m > result.gap.position_rms_m))
         return;
     out.notes.push_back(fmt::format(
-        "axis {}: with its play the simulated loop chatters about as much as the logged one, but at other "
-        "moments: row by row its position comes no nearer.",
+        "axis {}: row by row the position of the simulated loop comes no nearer to the logged one. With a play "
+        "a loop may chatter, at other moments than its machine.",
         c.axis.name));
 }
 
