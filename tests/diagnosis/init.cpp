@@ -50,6 +50,16 @@ TEST_CASE("init: period, axis, unit and resolution come from the log, and the fi
     CHECK(begun.comments.find("smallest step of the position in the log") != std::string::npos);
 }
 
+TEST_CASE("init: what the numbers of the log leave is said where it is much") {
+    auto log = workshop_log();
+    CHECK_FALSE(says(init_machine(request(), &log).notes, "that leaves"));
+    auto& command = log.axes.at(0).command;
+    const double size = rms(command);
+    for (std::size_t k = 0; k < command.size(); ++k)
+        command[k] += size * std::sin(0.05 * static_cast<double>(k));
+    CHECK(says(init_machine(request(), &log).notes, "axis x: that leaves"));
+}
+
 TEST_CASE("init: every field goes to its key, each with its line of comment") {
     auto r = request();
     r.sample_period_s = 0.0005;

@@ -193,6 +193,20 @@ TEST_CASE("propose_map: a table of several axes, its units in a line of their ow
     CHECK(p.columns[7].role.empty());
 }
 
+TEST_CASE("propose_map: empty last cells, as spreadsheets write them, and rows before the first value") {
+    const auto sheet = propose_map("time,q3 position [rad],tau,,\n0,0.1,5.6,,\n0.01,0.2,6.0,,\n", "sheet.csv");
+    CHECK(sheet.columns.size() == 5);
+    CHECK(sheet.columns.at(1).role == "position");
+    const auto waiting = propose_map("%remark\n%time,voltage,position,velocity\n%[s],[V],[turns],[turns/s]\n"
+                                     "nan,nan,nan,nan;\n0.1,0.0,113.9,0.0;\n0.2,0.5,113.9,0.1;\n",
+                                     "chirp.csv");
+    CHECK(waiting.layout.at("header") == 2); // not that of the units
+    REQUIRE(of_role(waiting, "x", "command"));
+    CHECK(of_role(waiting, "x", "command")->name == "voltage");
+    REQUIRE(of_role(waiting, "x", "position"));
+    CHECK(of_role(waiting, "x", "position")->name == "position");
+}
+
 TEST_CASE("propose_map: a table whose columns say too little or too much leaves it to a person") {
     const auto twice = propose_map("time_s,motor position (deg),load position (deg),u\n0,1,2,3\n", "a.csv");
     CHECK(of_role(twice, "motor", "position")->unit == "deg"); // two axes, as far as the names say

@@ -6,6 +6,7 @@
 #include <quadrant/diagnosis/fit/fit.hpp>
 #include <quadrant/diagnosis/fit/record.hpp>
 #include <quadrant/diagnosis/which/candidate.hpp>
+#include <quadrant/diagnosis/which/first_look.hpp>
 #include <quadrant/diagnosis/which/promising.hpp>
 
 #include <doctest/doctest.h>
@@ -136,9 +137,9 @@ TEST_CASE("first looks: beside a constant force friction differs by direction as
                              from.fit.plant, left,           from.fit.innovation.rows};
         const effect& constant = *effect_named("constant_force");
         const double start = constant.starts(look).at(0).at(0).start;
-        first_look looks(fit, from, constant, look, slopes, 1);
-        REQUIRE(looks.courses().size() == 1);
-        const fit_result& begun = looks.courses()[0].result();
+        auto looks = first_looks(fit, from, constant, look, slopes, 1);
+        REQUIRE(looks.size() == 1);
+        const fit_result& begun = looks[0].result();
         CHECK(begun.plant.friction.coulomb_asymmetry == doctest::Approx(described));
         CHECK(begun.plant.constant_force ==
               doctest::Approx(start - found * begun.plant.friction.coulomb).epsilon(1e-6));
@@ -182,4 +183,42 @@ TEST_CASE("first looks: of many starts the better half goes on, of two both; by 
     }
     for (std::size_t i = 0; i < two.size(); ++i)
         CHECK(std::abs(courses[masses.size() + i].result().objective - behind(two[i], steps)) < 1e-3);
+}
+
+TEST_CASE(
+    "first looks: the best of each set of numbers is kept where it is near the best, and a fit to the end "
+    "chooses between them") {
+    const heavier machine;
+    const fitter fit(machine.record.observer, machine.record.score);
+    const parameter viscous{.key = "viscous_N_s_per_m",
+                            .of = [](plant_model& m) -> double& { return m.friction.viscous_slope; },
+                            .start = machine.plant.friction.viscous_slope,
+                            .low = 1,
+                            .high = 5000,
+                            .logarithmic = true};
+    candidate from{.effects = {}};
+    from.fit = fit.fit(machine.plant, {}, 1);
+    std::vector<fit_course> starts;
+    for (const double mass : {190.0, 200.0})
+        starts.emplace_back(fit, machine.plant, std::vector{machine.mass_from(mass)}, 1);
+    starts.emplace_back(fit, machine.plant, std::vector{viscous}, 30);
+    fit.run(std::span(starts));
+    const double mass_gains = from.fit.objective - starts[1].result().objective,
+                 viscous_gains = from.fit.objective - starts[2].result().objective;
+    REQUIRE(mass_gains > 0);
+    REQUIRE(viscous_gains > 0);
+    const double share = 0.5 * std::min(mass_gains, viscous_gains) / std::max(mass_gains, viscous_gains);
+    auto again = starts;
+    candidate none;
+    detail::take_best(none, from, again, 1);
+    CHECK(none.other_ways.empty());
+    candidate sketch;
+    detail::take_best(sketch, from, starts, share);
+    REQUIRE(sketch.other_ways.size() == 1);
+    CHECK(sketch.fit.parameters.at(0).key != sketch.other_ways[0].parameters.at(0).key);
+    if (sketch.fit.parameters[0].key == "mass_kg")
+        std::swap(sketch.fit, sketch.other_ways[0]); // the worse one first
+    finish(machine.record, sketch);
+    CHECK(sketch.other_ways.empty());
+    CHECK(sketch.fit.plant.mass == doctest::Approx(225).epsilon(0.02));
 }

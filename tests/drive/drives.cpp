@@ -19,6 +19,7 @@ TEST_CASE("set_point_line: held set-points are steps, linear ones come one perio
             const double along = kind == interpolation::hold ? 0 : p;
             CHECK(line(s, p) == doctest::Approx(3 * (7 - late + along)));
             CHECK(line.slope(s, p) == doctest::Approx(kind == interpolation::hold ? 0 : 3));
+            CHECK(line.velocity(s, p) == doctest::Approx(3)); // what a feedforward takes, held or not
         }
     }
 }

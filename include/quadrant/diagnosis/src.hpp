@@ -142,6 +142,8 @@
 #include "which/causes.ipp"
 #include "which/doubt.hpp"
 #include "which/doubt.ipp"
+#include "which/first_look.hpp"
+#include "which/first_look.ipp"
 #include "which/interval.hpp"
 #include "which/interval.ipp"
 #include "which/looks.hpp"

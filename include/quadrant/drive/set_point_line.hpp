@@ -22,8 +22,8 @@ enum class interpolation { hold, linear, cubic };
 /// r0 is the newest set-point, r1 the one before; p = 0 ... 1 is the time since r0 arrived, in periods.
 /// Source: CiA 402-2, interpolated position mode (linear) and cyclic synchronous position with the cubic that
 /// drives offer.
-/// Ports: arrive(state, set-point) once a period; line(state, p) and slope(state, p) [a period] in between. A
-/// lost set-point arrives as the previous one.
+/// Ports: arrive(state, set-point) once a period; line(state, p), slope(state, p) and velocity(state, p) [a
+/// period] in between. A lost set-point arrives as the previous one.
 /// State: the last four set-points, given and returned by the caller; `state::at(x)`: as if x had been asked
 /// for ever.
 /// Range: 0 <= p <= 1. NaN and infinities pass on. Throws nothing. Runs in lanes.
@@ -57,6 +57,12 @@ public:
         if (kind_ == interpolation::linear) return r[0] - r[1];
         const Real a = Real(0.5) * (r[1] - r[3]), b = Real(0.5) * (r[0] - r[2]), d = r[1] - r[2];
         return a + p * (Real(2) * (Real(3) * d - Real(2) * a - b) + p * Real(3) * (a + b - Real(2) * d));
+    }
+
+    /// What a feedforward takes for the velocity [a period]: the slope; of held set-points, which have none,
+    /// the last step.
+    Real velocity(const state& s, Real p) const noexcept {
+        return kind_ == interpolation::hold ? s.last[0] - s.last[1] : slope(s, p);
     }
 
 private:

@@ -130,7 +130,7 @@ inline reference_sum shifted_set_point(const plant_model& p, double period, bool
         out.force = 1 / stiffness;
         out.overcome = d.minimum_duty * d.supply * p.force_constant;
     } else {
-        const double fed = d.between == interpolation::hold ? 0 : d.velocity_feedforward; // a step has no slope
+        const double fed = d.velocity_feedforward;
         out.velocity = (1 - fed) / d.position_gain;
         if (!pushed && d.velocity_integral > 0)
             out.acceleration = viscous / d.velocity_integral / d.position_gain;

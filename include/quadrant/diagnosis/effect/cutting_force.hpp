@@ -11,7 +11,8 @@ namespace quadrant::inline v0::diagnosis::suspect {
 /// Force periodic in time: mean + sum of N_i sin(2 pi i f t + phase_i), a turning cutter or spindle. Joins the
 /// force. Shows as lines in the frequency of the residual that no motion shifts. The mean cannot be
 /// distinguished from a constant force, and the integral of a drive's loop hides it; the phase begins anew with
-/// each log. The fundamental up to three times the corner: above, rounding of the encoder makes limit cycles.
+/// each log. The fundamental up to three times the corner: above, rounding of the encoder makes limit cycles;
+/// four rows a turn at least.
 inline constexpr effect cutting_force{
     .name = "cutting_force",
     .label = "cutting force",
@@ -72,17 +73,27 @@ inline constexpr effect cutting_force{
                      most = 10 * s.force_scale(); // the loop may be too slow to answer
         const auto time = detail::times_in_their_logs(s);
         const double cycle = 1 / s.record.scale.corner_Hz; // of the corner
-        const double shortest = std::max(0.3 * cycle, 10 * s.record.period), longest = 30 * cycle;
+        const double shortest = std::max(0.3 * cycle, 4 * s.record.period), longest = 30 * cycle;
         std::vector<std::vector<parameter>> out;
+        // From half of the rows' rate on a harmonic is another one under a second name.
+        const auto seen = [&](std::vector<parameter> start, double period) {
+            const auto many = static_cast<std::size_t>(period / (2.5 * s.record.period));
+            start.resize(std::min(start.size(), 1 + 2 * many));
+            return start;
+        };
         for (double period :
              detail::comb_periods<4>(s.residual, time, longest, shortest, s.record.score.skip)) {
             if (detail::motion_repeats(s.record.position, period / s.record.period) ||
                 detail::strokes_repeat(s.record, period) || detail::bound_to_position(s, period, time))
                 continue;
-            out.push_back(detail::repeating<detail::cutting_force_harmonics, 4>(
-                "process.fundamental_Hz", "process.force_N", period, duration, most));
-            out.push_back(detail::repeating<detail::cutting_force_harmonics, 8>(
-                "process.fundamental_Hz", "process.force_N", period, duration, most));
+            out.push_back(seen(detail::repeating<detail::cutting_force_harmonics, 4>(
+                                   "process.fundamental_Hz", "process.force_N", period, duration, most),
+                               period));
+            if (auto eight = seen(detail::repeating<detail::cutting_force_harmonics, 8>(
+                                      "process.fundamental_Hz", "process.force_N", period, duration, most),
+                                  period);
+                eight.size() > out.back().size())
+                out.push_back(std::move(eight));
         }
         // Where a drive's integral begins stands for any mean, unless what the drive gives was measured.
         if (s.leader.drive.has_integral() && !s.record.taps_force(s.leader.drive)) return out;

@@ -5,6 +5,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <vector>
+
 namespace quadrant::inline v0::diagnosis {
 
 /// What an effect may look at to choose its start values: the machine file, the best model so far and the force
@@ -23,6 +26,15 @@ struct screening {
     /// size: a servo that its friction holds begins far too low, and what resists there, the motor moves.
     double farthest(double usual, double motor_moves) const {
         return record.closed() ? std::max(usual, motor_moves) : usual;
+    }
+    /// Where the search of a number that is never negative begins, which is `known` and seems to be `seen`
+    /// larger, at `least`. Behind a drive's loops that says its size only: what a delay or a gain leaves there
+    /// has any sign, and hides it.
+    std::vector<double> beginnings(double known, double seen, double least = 0) const {
+        std::vector<double> out{std::max(known + seen, least)};
+        if (record.replayed() && seen < 0) out.push_back(known - seen);
+        std::erase_if(out, [](double x) { return !(x > 0); });
+        return out;
     }
 };
 

@@ -43,21 +43,23 @@ inline constexpr effect position_spring{
             xx += (s.record.position[k] - mean_x) * (s.record.position[k] - mean_x);
             xf += (s.record.position[k] - mean_x) * (s.residual[k] - mean_f);
         }
-        const double slope = s.leader.spring + (xx > 0 ? xf / xx : 0), travel = detail::travel(s);
-        const double most = 3 * s.force_scale() * (1 + furthest / travel);
-        if (!(slope > 0) || !(travel > 0)) return {};
-        return {{{.key = "spring_N_per_m",
-                  .of = [](plant_model& p) -> double& { return p.spring; },
-                  .start = slope,
-                  .low = 0,
-                  .high = 2 * s.force_scale() / travel,
-                  .step = 1e-6 * s.force_scale() / travel},
-                 {.key = "constant_force_N",
-                  .of = [](plant_model& p) -> double& { return p.constant_force; },
-                  .start = s.leader.constant_force + (slope - s.leader.spring) * mean_x - mean_f,
-                  .low = -most,
-                  .high = most,
-                  .step = 1e-6 * s.force_scale()}}};
+        const double travel = detail::travel(s), most = 3 * s.force_scale() * (1 + furthest / travel);
+        if (!(travel > 0)) return {};
+        std::vector<std::vector<parameter>> out;
+        for (const double slope : s.beginnings(s.leader.spring, xx > 0 ? xf / xx : 0))
+            out.push_back({{.key = "spring_N_per_m",
+                            .of = [](plant_model& p) -> double& { return p.spring; },
+                            .start = slope,
+                            .low = 0,
+                            .high = 2 * s.force_scale() / travel,
+                            .step = 1e-6 * s.force_scale() / travel},
+                           {.key = "constant_force_N",
+                            .of = [](plant_model& p) -> double& { return p.constant_force; },
+                            .start = s.leader.constant_force + (slope - s.leader.spring) * mean_x - mean_f,
+                            .low = -most,
+                            .high = most,
+                            .step = 1e-6 * s.force_scale()}});
+        return out;
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
         return {{"spring_N_per_m", {p.spring}}, {"constant_force_N", {p.constant_force}}};

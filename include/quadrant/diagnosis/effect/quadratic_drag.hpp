@@ -56,16 +56,17 @@ inline constexpr effect quadratic_drag{
             ww += w * w;
             wf += w * s.residual[k];
         }
-        const double start = own_values<detail::drag>(s.leader)[0].values[0] + (ww > 0 ? wf / ww : 0);
-        if (!(start > 0)) return {};
-        const double speed = s.record.scale.speed;
-        return {{{.key = std::string(detail::drag.numbers[0].key),
-                  .of = own_number<detail::drag, 0>,
-                  .start = start,
-                  .low = 0.01 * start,
-                  .high = s.farthest(20 * start, s.force_scale() / (speed * speed)),
-                  .logarithmic = true,
-                  .step = 1e-3}}};
+        const double described = own_values<detail::drag>(s.leader)[0].values[0], speed = s.record.scale.speed;
+        std::vector<std::vector<parameter>> out;
+        for (const double start : s.beginnings(described, ww > 0 ? wf / ww : 0))
+            out.push_back({{.key = std::string(detail::drag.numbers[0].key),
+                            .of = own_number<detail::drag, 0>,
+                            .start = start,
+                            .low = 0.01 * start,
+                            .high = s.farthest(20 * start, s.force_scale() / (speed * speed)),
+                            .logarithmic = true,
+                            .step = 1e-3}});
+        return out;
     },
     .read = own_values<detail::drag>};
 

@@ -37,15 +37,18 @@ inline constexpr effect viscous_friction{
             vv += s.record.velocity[k] * s.record.velocity[k];
             vf += s.record.velocity[k] * s.residual[k];
         }
-        const double b = s.leader.friction.viscous_slope, slope = vv > 0 ? vf / vv : 0;
-        const double start = std::max({b + slope, 0.25 * b, 1e-5 * s.force_scale() / s.record.scale.speed});
-        return {{{.key = "viscous_N_s_per_m",
-                  .of = [](plant_model& p) -> double& { return p.friction.viscous_slope; },
-                  .start = start,
-                  .low = 0.01 * start,
-                  .high = s.farthest(20 * start, s.force_scale() / s.record.scale.speed),
-                  .logarithmic = true,
-                  .step = 1e-3}}};
+        const double b = s.leader.friction.viscous_slope, speed = s.record.scale.speed;
+        const double least = std::max(0.25 * b, 1e-5 * s.force_scale() / speed);
+        std::vector<std::vector<parameter>> out;
+        for (const double start : s.beginnings(b, vv > 0 ? vf / vv : 0, least))
+            out.push_back({{.key = "viscous_N_s_per_m",
+                            .of = [](plant_model& p) -> double& { return p.friction.viscous_slope; },
+                            .start = start,
+                            .low = 0.01 * start,
+                            .high = s.farthest(20 * start, s.force_scale() / speed),
+                            .logarithmic = true,
+                            .step = 1e-3}});
+        return out;
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
         return {{"viscous_N_s_per_m", {p.friction.viscous_slope}}};

@@ -220,10 +220,8 @@ QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double peri
     out.acceleration = number(0), out.speed = number(1);
     if (onwards == 0) out.direction = number(2), out.mean = number(3);
     if (onwards != 0) out.resists = {whole[2] + onwards * whole[3], std::sqrt(square_of_both)};
-    if (lateness) {
-        out.lateness = number(of_axis);
-        detail::add_shares_left(out, all, energy, whole, of_axis);
-    }
+    if (lateness) out.lateness = number(of_axis);
+    detail::add_shares_left(out, all, energy, whole, of_axis);
     if (curvature) out.curvature = number(of_axis + 1);
     if (turns) {
         out.weight = {std::hypot(whole[4], whole[5]), std::sqrt(square[4] + square[5])};

@@ -25,14 +25,16 @@ private:
     explicit any_table(char separator) { layout_.separator = separator; }
 
     /// Goes to the first row of numbers; true where there is one of at least two cells. A stamp may be a time
-    /// of day.
+    /// of day, and cells may be empty, as behind the last comma of a spreadsheet.
     bool find_rows(std::string_view text, std::string_view file) {
         foreign_lines lines(layout_, text, file);
         for (std::size_t k = 0; k < most_header_lines && lines.next(); ++k) {
             row cells;
-            std::size_t numbers = 0;
-            for (const auto& cell : lines.cells()) {
+            std::size_t numbers = 0, lacking = 0, nans = 0;
+            for (std::size_t i = 0; const auto& cell : lines.cells()) {
                 cells.emplace_back(cell.text);
+                lacking += lines.lacks(i++);
+                nans += cell.text.starts_with("nan") || cell.text.starts_with("NaN");
                 double value = 0;
                 const bool comma = layout_.separator != ',' && cell.text.find(',') != cell.text.npos;
                 std::string number = cells.back();
@@ -41,11 +43,13 @@ private:
                 ++numbers;
                 if (comma) layout_.decimal = ',';
             }
-            if (numbers >= 2 && numbers + 1 >= cells.size()) {
+            if (numbers >= 2 && numbers + lacking + 1 >= cells.size()) {
                 columns_ = cells.size();
                 return true;
             }
-            if (cells.size() > 1) before_.emplace_back(lines.number(), std::move(cells));
+            const bool before_the_first_value = nans >= 2; // a row whose drive had not answered yet
+            if (cells.size() > 1 && !before_the_first_value)
+                before_.emplace_back(lines.number(), std::move(cells));
         }
         return false;
     }
@@ -56,7 +60,7 @@ private:
         for (const auto& [number, cells] : before_) {
             if (cells.size() != columns_) continue;
             const bool are_units = header > 0 && std::all_of(cells.begin(), cells.end(), [](const auto& c) {
-                                       return c.empty() || find_unit(bare(c));
+                                       return c.empty() || bare(c) != c || find_unit(c);
                                    });
             if (!are_units) header = number;
             (are_units ? units : names) = cells;
@@ -74,8 +78,9 @@ private:
         return true;
     }
 
-    /// "[mm]": mm.
+    /// "[mm]", behind the sign of a comment, too: mm.
     static std::string_view bare(std::string_view unit) {
+        while (unit.size() > 1 && (unit.front() == '%' || unit.front() == '#')) unit.remove_prefix(1);
         if (unit.size() > 2 && (unit.front() == '[' || unit.front() == '('))
             unit = unit.substr(1, unit.size() - 2);
         return unit;

@@ -187,6 +187,12 @@ private:
             text_of(fmt::format("by the log {}; all signals behind the same zero-phase low-pass of {:.3g} Hz",
                                 sure.empty() ? "no number is sure" : sure, found.band_Hz),
                     kind_)));
+        constexpr double much = 0.1;
+        if (!sure.empty() && found.left > much)
+            text_.note(
+                fmt::format("axis {}: that leaves {:.2g} % of the command's variance there: something else "
+                            "acts, such as a load that swings, and the numbers hold a part of it",
+                            axis_, 100 * found.left));
     }
 };
 

@@ -44,28 +44,30 @@ public:
           loss_(d.losses_known() ? 0 : std::clamp(d.loss, 0.0, 1.0)), delay_((d.delay + d.read.age) / period),
           arrivals_(d, period), state_(line_state::at(values[0])) {}
 
-    /// Mean of the set-point and of its velocity [a row] from `begin` to `end`, in rows; call with rising
-    /// times.
+    /// Mean of the set-point, of its slope and of the velocity that a feedforward takes [a row] from `begin` to
+    /// `end`, in rows; call with rising times.
     struct stretch {
-        double value, velocity;
+        double value, slope, velocity;
     };
     stretch between(double begin, double end) {
         if (!others_.empty() && begin >= static_cast<double>(others_.front().row)) begin_anew();
         const double a = (begin - first_ - delay_) / arrivals_.every,
                      b = (end - first_ - delay_) / arrivals_.every;
-        stretch out{0, 0};
+        stretch out{0, 0, 0};
         for (double from = a; from < b;) { // pieces without an arrival
             const double to = std::min(b, static_cast<double>(next_));
             if (to > from) {
                 const double p = std::clamp(0.5 * (from + to) - static_cast<double>(next_) + 1, 0.0, 1.0);
                 out.value += (to - from) * line_(state_, p);
-                out.velocity += (to - from) * line_.slope(state_, p);
+                out.slope += (to - from) * line_.slope(state_, p);
+                out.velocity += (to - from) * line_.velocity(state_, p);
                 from = to;
             }
             if (from < b) arrive();
         }
         const double mean = 1 / (b - a);
-        return {out.value * mean, out.velocity * (mean / arrivals_.every)};
+        const double a_row = mean / arrivals_.every;
+        return {out.value * mean, out.slope * a_row, out.velocity * a_row};
     }
 
 private:
@@ -358,7 +360,7 @@ private:
         for (std::size_t k = 0; k < out.size(); ++k) {
             const double row = static_cast<double>(k), part = std::max(0.0, row * parts - 0.5);
             const auto there = clock.between(row + to, row + to + moment);
-            const double step = there.value - to * there.velocity - between(points->value, part),
+            const double step = there.value - to * there.slope - between(points->value, part),
                          turn = there.velocity / period - between(points->velocity, part);
             out[k] = d.velocity_gain * (d.kind == drive_kind::velocity
                                             ? scale * step

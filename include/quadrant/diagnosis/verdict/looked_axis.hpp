@@ -129,6 +129,28 @@ inline void ready_axis::thin(double band, const rules& r, std::vector<std::strin
     period *= static_cast<double>(n);
 }
 
+/// A name with which the simulated loop leaves the log. A motor that hardly answers its command predicts the
+/// readings of an axis that other forces hold, and hides their names.
+struct loop_witness {
+    const effect* against = nullptr;
+    bool surely = false; ///< position and command go ten times as far from the log as without it, each
+    double error = 0;    ///< of the loop with all names
+
+    explicit loop_witness(const axis_case& c) {
+        if (!c.axis.controller && !c.axis.drive.closes()) return; // no loop is described
+        const std::vector<double> errors = how_far(c).loop_errors();
+        if (errors.empty()) return;
+        error = errors.back();
+        constexpr double further = 1.2, far = 100; // both in one: position times command
+        const bool open = !c.at_floor() && !c.within_its_laws();
+        for (std::size_t i = 1; i < errors.size() && !against; ++i)
+            if (errors[i] > (open ? further : far) * errors[i - 1]) {
+                against = c.best().effects[i - 1];
+                surely = errors[i] > far * errors[i - 1];
+            }
+    }
+};
+
 /// An axis that was looked at, and what it was looked at with.
 struct looked_axis {
     std::unique_ptr<ready_axis> ready;
@@ -141,17 +163,40 @@ struct looked_axis {
     }
     void look(const read_logs& logs, const progress& tell, const rules& limits) {
         ready_axis& of = *ready;
-        found = look_at({.axis = of.rigid,
-                         .log = of.both ? *of.both : of.log,
-                         .apart = of.log,
-                         .holdout = of.holdout ? &*of.holdout : nullptr,
-                         .both = of.both.has_value(),
-                         .soft = of.soft,
-                         .period = of.period,
-                         .excluded = of.excluded,
-                         .limits = limits,
-                         .stage = of.stage},
-                        logs.log.file, tell, notes);
+        const auto look = [&](std::vector<std::string>& said) {
+            return look_at({.axis = of.rigid,
+                            .log = of.both ? *of.both : of.log,
+                            .apart = of.log,
+                            .holdout = of.holdout ? &*of.holdout : nullptr,
+                            .both = of.both.has_value(),
+                            .soft = of.soft,
+                            .period = of.period,
+                            .excluded = of.excluded,
+                            .limits = limits,
+                            .stage = of.stage},
+                           logs.log.file, tell, said);
+        };
+        found = look(notes);
+        constexpr int most = 2; // names that are taken away
+        for (int i = 0; i < most && !found->best().effects.empty() && !found->models.over(); ++i) {
+            const loop_witness loop(*found);
+            if (!loop.against) return;
+            tell(fmt::format("axis {}: again, without {}", of.axis.name, loop.against->label));
+            of.excluded.by_readings.emplace_back(loop.against->name);
+            std::vector<std::string> said;
+            auto other = look(said);
+            const auto left = [](const axis_case& c) { return c.models.held_out_force(c.best()); };
+            if (!loop.surely && !(loop_witness(*other).error < loop.error && left(*other) < left(*found))) {
+                of.excluded.by_readings.pop_back();
+                return;
+            }
+            notes.push_back(
+                fmt::format("axis {}: {} would predict the readings, but the simulated loop does not "
+                            "follow with it: looked at without it.",
+                            of.axis.name, loop.against->label));
+            notes.insert(notes.end(), said.begin(), said.end());
+            found = std::move(other);
+        }
     }
     /// Causes between the two encoders whose size is that of the force.
     std::ptrdiff_t found_by_force() const {

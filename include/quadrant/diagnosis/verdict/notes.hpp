@@ -3,6 +3,7 @@
 #include "../where/places.hpp"
 #include "../which/doubt.hpp"
 #include "../which/late_velocity.hpp"
+#include "../which/shadow.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -70,8 +71,19 @@ inline void note_limit(diagnosis_result& out, const axis_case& c) {
             c.axis.name, *c.controller->limits_otherwise_from));
 }
 
-/// Two forces over the position of which little is left together.
+/// A friction along the travel that what is late makes of a cogging.
+inline void note_shadow(diagnosis_result& out, const axis_case& c) {
+    for (const effect* e : c.best().effects)
+        if (is_shadow_of_cogging(c, *e))
+            out.notes.push_back(fmt::format(
+                "axis {}: the {} has the period of the cogging and lies a quarter of it aside, as where force "
+                "and position are a little late against one another: record both at one moment.",
+                c.axis.name, e->label));
+}
+
+/// Two forces over the position of which little is left together, and what is the shadow of one.
 inline void note_cancelled(diagnosis_result& out, const axis_case& c) {
+    note_shadow(out, c);
     for (const effect* e : c.best().effects) {
         const effect* other = cancelled_by(c, *e);
         if (!other) continue;

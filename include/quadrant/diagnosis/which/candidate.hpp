@@ -39,6 +39,8 @@ struct candidate {
     };
     std::shared_ptr<std::optional<on_holdout>> holdout = std::make_shared<std::optional<on_holdout>>();
     bool missed = false; ///< the time was up before it was looked at
+    /// Of a sketch: what starts that free other numbers came to, where that is near what it is.
+    std::vector<fit_result> other_ways{};
 
     /// Whether a number ends where its search ends.
     bool ends_at_a_bound(std::size_t i) const {
@@ -111,34 +113,11 @@ QUADRANT_DIAGNOSIS_DECL void cross_validate(candidate& c, const scoring& s, bool
 /// The parameters of a fitted model, ready to be fitted again from where they are.
 QUADRANT_DIAGNOSIS_DECL std::vector<parameter> resumed(const fit_result& f);
 
-namespace detail {
-/// The first of these starts whose numbers another fit has all found, begun there; none, where it found others
-/// or they are those of that start.
-QUADRANT_DIAGNOSIS_DECL std::optional<std::vector<parameter>>
-begun_where(const fit_result& found, const std::vector<std::vector<parameter>>& starts);
-} // namespace detail
-
-/// A first look at `from` with one more effect: a step or two from every start that it offers, or from where a
-/// fit has `found` it by itself; the slopes of the parameters that `from` has taken from there; the best kept,
-/// less what its parameters cost. No score yet. An effect that offers no start leaves an infinite objective.
-class first_look {
-public:
-    first_look(const fitter& fit, const candidate& from, const effect& added, const screening& look,
-               const shared_slopes& slopes, int steps, const fit_result* found = nullptr);
-    /// One from each start, to be run by the fitter.
-    std::vector<fit_course>& courses() { return courses_; }
-    /// The best of what they came to.
-    fit_result best();
-
-private:
-    std::vector<fit_course> courses_;
-};
-
 /// Scores a fitted model on motion that was not fitted, and keeps of its rows and blocks only what is asked for
 /// later: a diagnosis remembers hundreds of models.
 QUADRANT_DIAGNOSIS_DECL void judge(const axis_record& record, candidate& c);
 
-/// Fits sketches to the end, side by side, and scores them.
+/// Fits sketches to the end, side by side, with their other ways, and scores them: the best of each is kept.
 QUADRANT_DIAGNOSIS_DECL void finish(const axis_record& record, std::span<candidate* const> sketches);
 QUADRANT_DIAGNOSIS_DECL void finish(const axis_record& record, candidate& c);
 

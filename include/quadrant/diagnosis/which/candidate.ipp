@@ -79,7 +79,7 @@ inline double penalty_of_path(const fit_result& fit, double readings) {
     const auto free = std::count_if(fit.parameters.begin(), fit.parameters.end(),
                                     [](const parameter& p) { return !(p.spread > 0); });
     const auto& friction = fit.plant.friction;
-    constexpr double frictionless = 1e-3; // odds of a servo's gear without any
+    constexpr double frictionless = 0.03; // odds of a servo whose record shows none
     const bool none = !(friction.coulomb + friction.excess + friction.load > 0);
     return fitter::prior(fit) +
            0.5 * score_temperature * static_cast<double>(free) * std::log(std::max(2.0, readings)) -
@@ -120,100 +120,6 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter> resumed(const fit_result& f) {
     return ps;
 }
 
-namespace detail {
-
-/// The valleys of a path are narrow: the first of these parameters begins at the best of its start, its
-/// described value and fractions and multiples of both.
-inline void begin_at_the_best(std::vector<parameter>& ps, std::size_t first, const fitter& fit,
-                              plant_model plant) {
-    parameter& p = ps[first];
-    std::vector<double> values{p.start};
-    for (const double around : {p.start, p.of(plant)})
-        for (const double times : {0.2, 0.3, 0.45, 0.7, 1.0, 1.4, 2.2, 3.3, 5.0})
-            if (const double v = std::clamp(times * around, p.low, p.high);
-                v != 0 && std::none_of(values.begin(), values.end(),
-                                       [&](double x) { return std::abs(x - v) < 0.05 * std::abs(v); }))
-                values.push_back(v);
-    for (const parameter& q : ps) q.of(plant) = q.start;
-    std::vector<plant_model> plants(values.size(), plant);
-    for (std::size_t i = 0; i < values.size(); ++i) p.of(plants[i]) = values[i];
-    const auto looks = fit.objectives(plants);
-    p.start = values[static_cast<std::size_t>(std::min_element(looks.begin(), looks.end()) - looks.begin())];
-}
-
-QUADRANT_DIAGNOSIS_DECL std::optional<std::vector<parameter>>
-begun_where(const fit_result& found, const std::vector<std::vector<parameter>>& starts) {
-    plant_model there = found.plant;
-    for (std::vector<parameter> out : starts) {
-        bool all = !out.empty(), new_to_all = false;
-        for (parameter& p : out) {
-            const auto q = std::find_if(found.parameters.begin(), found.parameters.end(),
-                                        [&](const parameter& each) { return &each.of(there) == &p.of(there); });
-            if (!(all = q != found.parameters.end())) break;
-            const double x = std::clamp(p.of(there), p.low, p.high);
-            new_to_all = new_to_all || std::abs(x - p.start) > 0.05 * std::abs(x);
-            p.start = x;
-        }
-        if (all) return new_to_all ? std::optional(std::move(out)) : std::nullopt;
-    }
-    return std::nullopt;
-}
-
-/// A constant force that is searched takes the difference of the directions' friction to it: of both, fitted
-/// together, neither is known. True where `q` is that difference.
-inline bool gives_way_to_constant(const parameter& q, plant_model& plant, std::vector<parameter>& start) {
-    const auto constant = std::find_if(start.begin(), start.end(),
-                                       [](const parameter& p) { return p.key == "constant_force_N"; });
-    if (q.key != "coulomb_asymmetry" || !(q.spread > 0) || constant == start.end()) return false;
-    const double described = q.from_fit(q.expected), found = std::exchange(q.of(plant), described);
-    constant->start = std::clamp(constant->start - plant.friction.coulomb * (found - described), constant->low,
-                                 constant->high);
-    return true;
-}
-
-} // namespace detail
-
-QUADRANT_DIAGNOSIS_DECL first_look::first_look(const fitter& fit, const candidate& from, const effect& added,
-                                               const screening& look, const shared_slopes& slopes, int steps,
-                                               const fit_result* found) {
-    const auto resumed_from = resumed(from.fit);
-    auto starts = added.starts(look);
-    if (found) {
-        auto where = detail::begun_where(*found, starts);
-        starts.assign(where ? 1 : 0, where.value_or(std::vector<parameter>()));
-    }
-    for (auto& start : starts) {
-        plant_model plant = from.fit.plant;
-        added.join(plant, look);
-        std::vector<parameter> ps;
-        const bool bends = added.bends_calibration && start.size() > 1; // slopes without it lead away from it
-        known_slopes known{.from = &slopes};
-        for (std::size_t i = 0; i < resumed_from.size(); ++i) {
-            // The effect's own parameters replace the described ones.
-            const parameter& q = resumed_from[i];
-            const auto its = [&](const parameter& p) { return &p.of(plant) == &q.of(plant); };
-            if (std::none_of(start.begin(), start.end(), its) && !detail::gives_way_to_constant(q, plant, start))
-                ps.push_back(q), known.which.push_back(i);
-        }
-        const std::size_t own = ps.size();
-        ps.insert(ps.end(), start.begin(), start.end());
-        if (look.record.closed() && !start.empty()) detail::begin_at_the_best(ps, own, fit, plant);
-        courses_.emplace_back(fit, plant, ps, bends ? std::max(8, steps) : steps,
-                              bends ? known_slopes() : known, bends ? 4 : 0);
-    }
-}
-
-QUADRANT_DIAGNOSIS_DECL fit_result first_look::best() {
-    fit_result best;
-    double least = std::numeric_limits<double>::infinity();
-    for (fit_course& c : courses_)
-        if (const double cost = detail::cost_of(c.result()); cost < least) {
-            least = cost;
-            best = std::move(c.result());
-        }
-    return best;
-}
-
 QUADRANT_DIAGNOSIS_DECL void judge(const axis_record& record, candidate& c) {
     if (!std::isfinite(c.fit.objective)) return;
     cross_validate(c, record.score, record.replayed(), record.closed());
@@ -224,21 +130,28 @@ QUADRANT_DIAGNOSIS_DECL void judge(const axis_record& record, candidate& c) {
         *c.noise = position_noise(innovation, record.score, record.resolution);
     c.fit.innovation = {};
     c.fit.quadratic = {};
+    c.other_ways.clear();
 }
 
 QUADRANT_DIAGNOSIS_DECL void finish(const axis_record& record, std::span<candidate* const> sketches) {
     const fitter fit(record.observer, record.score);
     std::vector<fit_course> courses;
-    std::vector<candidate*> fitted;
+    std::vector<candidate*> fitted; // of each course
     for (candidate* c : sketches) {
         if (!std::isfinite(c->fit.objective)) continue;
-        courses.emplace_back(fit, c->fit.plant, resumed(c->fit), 30);
-        fitted.push_back(c);
+        c->other_ways.insert(c->other_ways.begin(), std::move(c->fit));
+        for (const fit_result& way : c->other_ways) {
+            courses.emplace_back(fit, way.plant, resumed(way), 30);
+            fitted.push_back(c);
+        }
+        c->other_ways.clear();
+        c->total = -std::numeric_limits<double>::infinity();
     }
     fit.run(std::span(courses));
     for (std::size_t i = 0; i < fitted.size(); ++i) {
-        fitted[i]->fit = std::move(courses[i].result());
-        judge(record, *fitted[i]);
+        candidate way{.effects = fitted[i]->effects, .fit = std::move(courses[i].result())};
+        judge(record, way);
+        if (i == 0 || fitted[i] != fitted[i - 1] || way.total > fitted[i]->total) *fitted[i] = std::move(way);
     }
 }
 

@@ -8,6 +8,7 @@
 #include "late_velocity.hpp"
 #include "of_the_motion.hpp"
 #include "rivals.hpp"
+#include "shadow.hpp"
 
 namespace quadrant::inline v0::diagnosis {
 

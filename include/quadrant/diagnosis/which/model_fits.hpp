@@ -3,6 +3,7 @@
 #include "../text/on_all_cores.hpp"
 #include "../text/progress.hpp"
 #include "axis_floors.hpp"
+#include "first_look.hpp"
 #include "promising.hpp"
 
 #include <atomic>

@@ -87,31 +87,23 @@ QUADRANT_DIAGNOSIS_DECL void model_fits::sketch_each(const candidate& from,
             models[i].missed = late;
         }
         if (late) return;
-        std::vector<first_look> looks;
         std::vector<fit_course> courses;
-        std::vector<std::size_t> model_of, starts_of; // each look; how many of each model
+        std::vector<std::size_t> starts_of; // how many of each model
         for (const std::size_t i : some) {
             const std::size_t before = courses.size();
             for (std::size_t j = 0; j < (begins_as_described(i) ? origins.size() : 1); ++j) {
-                model_of.push_back(i);
                 const screening look{axis_.plant,          axis_.tolerance, record_,
                                      origins[j].fit.plant, left[j],         innovation[j]};
-                looks.emplace_back(fit, origins[j], *models[i].effects.back(), look, slopes[j],
-                                   steps_of_a_look(), found[i]);
-                std::move(looks.back().courses().begin(), looks.back().courses().end(),
-                          std::back_inserter(courses));
+                auto starts = first_looks(fit, origins[j], *models[i].effects.back(), look, slopes[j],
+                                          steps_of_a_look(), found[i]);
+                std::move(starts.begin(), starts.end(), std::back_inserter(courses));
             }
             starts_of.push_back(courses.size() - before);
         }
         detail::run_the_promising(fit, courses, starts_of, steps_of_a_look());
-        auto next = courses.begin();
-        for (std::size_t j = 0; j < looks.size(); ++j) {
-            for (fit_course& c : looks[j].courses()) c = std::move(*next++);
-            fit_result best = looks[j].best();
-            fit_result& kept = models[model_of[j]].fit;
-            const bool first = j == 0 || model_of[j] != model_of[j - 1];
-            if (first || best.objective < kept.objective) kept = std::move(best);
-        }
+        std::span<fit_course> rest = courses;
+        for (std::size_t j = 0; j < some.size(); rest = rest.subspan(starts_of[j++]))
+            detail::take_best(models[some[j]], from, rest.first(starts_of[j]), rules_.near_best);
     };
     in_groups(which, 4, sketch, 1, models);
 }

@@ -29,7 +29,8 @@ public:
         const candidate* best = &known;
         double most = worth(known) + rules_.margin;
         for (const candidate& c : tried_)
-            if (std::isfinite(c.total) && c.total > least && !same(c, known) && pays(c, calibrated_))
+            if (std::isfinite(c.total) && c.total > least && !same(c, known) && pays(c, calibrated_) &&
+                (!has_all(c, known) || explains_the_rest(c, known)))
                 if (const double w = worth(c); w > most) {
                     most = w;
                     best = &c;
@@ -62,8 +63,15 @@ private:
     double worth(const candidate& c) const {
         return c.total - rules_.margin * static_cast<double>(c.effects.size());
     }
-    /// Whether what a model leaves needs no further cause of another kind: nothing that would matter.
-    bool enough(const candidate& c) const { return near_floor(c) && settled(c); }
+    /// Whether what a model leaves needs no further cause of another kind: nothing that would matter. Behind
+    /// the loops of a drive the readings are compared with a path that a delay inside its tolerance moves by
+    /// more than a force does; what causes leave there is not excused by it.
+    bool enough(const candidate& c) const {
+        return near_floor(c) && (record_.replayed() ? structure(c, noise(c)) < rules_.structure : settled(c));
+    }
+    /// Whether `step` is worth its name where `best` leaves what machines inside the tolerances differ by: it
+    /// takes four fifths of the structure, as a cause does and a law that is a little wrong does not.
+    bool explains_the_rest(const candidate& step, const candidate& best) const;
     /// The suspects whose number is beyond its tolerance: where nothing that would matter is left, such a
     /// number alone may still be missing.
     std::vector<const effect*> beyond_tolerance(const candidate& c) const;
@@ -80,8 +88,8 @@ private:
     /// to as many names. Returns the better one; the other is a model that was tried, and counts against it.
     candidate by_the_scale(const candidate& best) const;
     /// The calibrated machine with two and more of the everyday effects: one alone may take what two of them
-    /// make.
-    std::vector<candidate> everyday() const;
+    /// make. And the best `single` effect with each of them: beside it one may do what two do without it.
+    std::vector<candidate> everyday(const candidate& single) const;
     /// The best of these that pays, after sorting them; null: none does.
     const candidate* paying(std::vector<candidate>& next, const candidate& best) const;
 

@@ -23,7 +23,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::run() const {
         }
         const candidate* step = paying(next, best);
         if (best.effects.empty() && !over() && !(step && (at_noise(*step) || enough(*step)))) {
-            add(everyday());
+            add(everyday(step ? *step : calibrated_));
             step = paying(next, best);
         }
         if (step && goes_on_without(best, *step)) {
@@ -62,6 +62,13 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::run() const {
     // What does not take the gap of the machine file down explains nothing, however well it scores.
     if (!best.effects.empty() && !shrinks(best, given_)) best = calibrated_;
     return path_to(best);
+}
+
+QUADRANT_DIAGNOSIS_DECL bool search::explains_the_rest(const candidate& step, const candidate& best) const {
+    constexpr double most = 0.2;
+    const bool matters = best.effects.empty() || !record_.replayed() || !near_floor(best) || !settled(best);
+    return matters || is_beyond_tolerance(best, *step.effects.back()) ||
+           structure(step, noise(step)) < std::max(rules_.structure, most * structure(best, noise(best)));
 }
 
 QUADRANT_DIAGNOSIS_DECL candidate search::by_the_scale(const candidate& best) const {
@@ -163,7 +170,7 @@ QUADRANT_DIAGNOSIS_DECL bool search::goes_on_without(candidate& best, const cand
     return true;
 }
 
-QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::everyday() const {
+QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::everyday(const candidate& single) const {
     std::vector<const effect*> each;
     for (const effect* e : suspects())
         if (e->everyday) each.push_back(e);
@@ -191,6 +198,10 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::everyday() const {
             if (set >> i & 1) some.push_back(each[i]);
         if (some.size() > 1) out.push_back(with(some));
     }
+    if (!single.effects.empty() && !single.effects.front()->everyday) {
+        const std::vector<candidate> beside = with_these(single, each);
+        out.insert(out.end(), beside.begin(), beside.end());
+    }
     std::erase_if(out, [](const candidate& c) { return !std::isfinite(c.total); });
     return out;
 }
@@ -200,7 +211,7 @@ QUADRANT_DIAGNOSIS_DECL const candidate* search::paying(std::vector<candidate>& 
     std::stable_sort(next.begin(), next.end(),
                      [&](const auto& a, const auto& b) { return worth(a) > worth(b); });
     const auto found = std::find_if(next.begin(), next.end(), [&](const auto& c) { return pays(c, best); });
-    if (found == next.end()) return nullptr;
+    if (found == next.end() || !explains_the_rest(*found, best)) return nullptr;
     const candidate* step = &*found;
     for (const candidate& c : next) // what a name adds to another that it holds must pay as one more name would
         if (holds(*step, c) && pays(c, best) &&
