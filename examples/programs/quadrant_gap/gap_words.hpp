@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <string_view>
@@ -16,7 +17,12 @@ namespace quadrant_gap {
 
 /// What the causes leave of the gap. In energy: 1 % of it is a tenth of the rms value.
 inline std::string unexplained_share(const diagnosis_result& d) {
-    if (!(d.share_unexplained > 0)) return "Nothing that matters.";
+    const bool open = d.verdict > verdict::explained,
+               sure = std::all_of(d.causes.begin(), d.causes.end(), claimed);
+    if (!(d.share_unexplained > 0))
+        return !open  ? "Nothing that matters."
+               : sure ? "Only what is slow and smaller than the noise of a row."
+                      : "With the suspects added, nothing that matters.";
     return fmt::format("{} of the gap's energy (the square of its rms value) stays unexplained.",
                        d.share_unexplained < 0.005 ? "Less than 1 %" : percent(d.share_unexplained));
 }
