@@ -133,8 +133,9 @@ inline void ready_axis::thin(double band, const rules& r, std::vector<std::strin
 /// readings of an axis that other forces hold, and hides their names.
 struct loop_witness {
     const effect* against = nullptr;
-    bool surely = false; ///< position and command go ten times as far from the log as without it, each
-    double error = 0;    ///< of the loop with all names
+    std::size_t which = 0; ///< of the names
+    bool surely = false;   ///< position and command go ten times as far from the log as without it, each
+    double error = 0;      ///< of the loop with all names
 
     explicit loop_witness(const axis_case& c) {
         if (!c.axis.controller && !c.axis.drive.closes()) return; // no loop is described
@@ -145,7 +146,8 @@ struct loop_witness {
         const bool open = !c.at_floor() && !c.within_its_laws();
         for (std::size_t i = 1; i < errors.size() && !against; ++i)
             if (errors[i] > (open ? further : far) * errors[i - 1]) {
-                against = c.best().effects[i - 1];
+                which = i - 1;
+                against = c.best().effects[which];
                 surely = errors[i] > far * errors[i - 1];
             }
     }
@@ -180,7 +182,8 @@ struct looked_axis {
         constexpr int most = 2; // names that are taken away
         for (int i = 0; i < most && !found->best().effects.empty() && !found->models.over(); ++i) {
             const loop_witness loop(*found);
-            if (!loop.against) return;
+            // What the owner excludes wrongly makes other names stand in for it, and is told beside them.
+            if (!loop.against || excluded_instead_of(*found, loop.which).probability > 0.5) return;
             tell(fmt::format("axis {}: again, without {}", of.axis.name, loop.against->label));
             of.excluded.by_readings.emplace_back(loop.against->name);
             std::vector<std::string> said;
