@@ -23,13 +23,10 @@ const drive_simulator::machine drive{.mass = 120,
 diagnosis_result diagnosed(const drive_simulator::machine& m) {
     auto described = drive;
     described.delay *= 1.03;
-    auto axis = position_drive::axis_of(described, period);
-    axis["tolerance"] = {{"mass", 0.05},           {"viscous", 0.1},        {"coulomb", 0.05},
-                         {"force_constant", 0.02}, {"velocity_gain", 0.05}, {"position_gain", 0.03},
-                         {"command_delay", 0.1}};
-    return position_drive::diagnosed(position_drive::file_of(axis, period),
-                                     position_drive::recorded(m, period, 1, 1),
-                                     position_drive::recorded(m, period, 0.8, 2));
+    const nlohmann::json tolerance{{"mass", 0.05},           {"viscous", 0.1},        {"coulomb", 0.05},
+                                   {"force_constant", 0.02}, {"velocity_gain", 0.05}, {"position_gain", 0.03},
+                                   {"command_delay", 0.1}};
+    return position_drive::diagnosed(described, tolerance, period, m, m);
 }
 
 } // namespace

@@ -11,20 +11,17 @@ using namespace quadrant::diagnosis;
 TEST_CASE("position drive: a drag that a delay hides is named beside it") {
     const drive_simulator::machine described{
         .mass = 147, .viscous = 86, .gain = 19400, .position_gain = 19.6, .delay = 1.3e-3, .count = 1e-7};
-    auto axis = position_drive::axis_of(described, 1e-3);
-    axis["tolerance"] = {{"mass", 0.03},
-                         {"viscous", 0.1},
-                         {"velocity_gain", 0.01},
-                         {"position_gain", 0.01},
-                         {"command_delay", 0.05}};
+    const nlohmann::json tolerance{{"mass", 0.03},
+                                   {"viscous", 0.1},
+                                   {"velocity_gain", 0.01},
+                                   {"position_gain", 0.01},
+                                   {"command_delay", 0.05}};
     auto m = described;
     m.mass *= 1.01;
     m.viscous *= 0.98;
     m.delay = 7e-3;
     m.drag = 50;
-    const auto d =
-        position_drive::diagnosed(position_drive::file_of(axis, 1e-3), position_drive::recorded(m, 1e-3, 1, 1),
-                                  position_drive::recorded(m, 1e-3, 0.8, 2));
+    const auto d = position_drive::diagnosed(described, tolerance, 1e-3, m, m);
     REQUIRE(d.causes.size() == 2);
     const auto is_named = [&](std::string_view effect, double value) {
         const auto c = std::find_if(d.causes.begin(), d.causes.end(),

@@ -39,7 +39,6 @@ struct machine {
     double gravity = 0;              ///< torque -gravity sin x
     double constant = 0, spring = 0; ///< force, and -spring x
     double drag = 0;                 ///< force -drag v |v|
-    double cogging = 0, pitch = 1;   ///< force cogging sin(2 pi x / pitch)
     /// Of each row: what is added to the set-point, and to the force of the velocity loop; empty: nothing.
     std::vector<double> shift{}, added{};
 };
@@ -146,8 +145,7 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
             mean_force += force / steps;
             if (i == 0) first_force = m.current_before ? force_before : force;
             force_before = force;
-            const double others = m.cogging * std::sin(2 * std::numbers::pi * x / m.pitch) -
-                                  m.gravity * std::sin(x) + m.constant - m.spring * x;
+            const double others = m.constant - m.gravity * std::sin(x) - m.spring * x;
             v += h * (force - (m.viscous + m.drag * std::abs(v)) * v + others) / m.mass;
             if (m.give > 0) {
                 const double end = std::copysign(m.give, v);

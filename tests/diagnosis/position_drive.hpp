@@ -47,4 +47,14 @@ inline quadrant::diagnosis::diagnosis_result diagnosed(const quadrant::diagnosis
         machine, log, &holdout, [](const std::string&) {}, one);
 }
 
+/// The same of two logs, at two paces, of machines beside the file of `described` with these tolerances.
+inline quadrant::diagnosis::diagnosis_result diagnosed(const drive_simulator::machine& described,
+                                                       const nlohmann::json& tolerance, double period,
+                                                       const drive_simulator::machine& real,
+                                                       const drive_simulator::machine& in_holdout) {
+    auto axis = axis_of(described, period);
+    axis["tolerance"] = tolerance;
+    return diagnosed(file_of(axis, period), recorded(real, period, 1, 1), recorded(in_holdout, period, 0.8, 2));
+}
+
 } // namespace position_drive

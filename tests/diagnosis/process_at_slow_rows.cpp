@@ -19,10 +19,9 @@ TEST_CASE(
                                              .position_gain = 25,
                                              .delay = period,
                                              .count = 2.5e-7};
-    auto axis = position_drive::axis_of(described, period);
-    axis["tolerance"] = {{"mass", 0.02},          {"viscous", 0.2},
-                         {"velocity_gain", 0.01}, {"velocity_integral", 0.01},
-                         {"position_gain", 0.01}, {"command_delay", 0.05}};
+    const nlohmann::json tolerance{{"mass", 0.02},          {"viscous", 0.2},
+                                   {"velocity_gain", 0.01}, {"velocity_integral", 0.01},
+                                   {"position_gain", 0.01}, {"command_delay", 0.05}};
     const auto milling = [&](double from) {
         auto m = described;
         for (std::size_t k = 0; k < 5000; ++k) {
@@ -31,9 +30,7 @@ TEST_CASE(
         }
         return m;
     };
-    const auto d = position_drive::diagnosed(position_drive::file_of(axis, period),
-                                             position_drive::recorded(milling(0), period, 1, 1),
-                                             position_drive::recorded(milling(0.7), period, 0.8, 2));
+    const auto d = position_drive::diagnosed(described, tolerance, period, milling(0), milling(0.7));
     REQUIRE(d.causes.size() == 1);
     CHECK(d.causes[0].effect == "cutting_force");
     CHECK(d.causes[0].probability >= 0.9);

@@ -2,6 +2,9 @@
 #pragma once
 #include "repeating.hpp"
 
+#include <algorithm>
+#include <set>
+
 namespace quadrant::inline v0::diagnosis::detail {
 inline harmonics& cutting_force_harmonics(plant_model& p) { return p.cutting; }
 } // namespace quadrant::inline v0::diagnosis::detail
@@ -75,25 +78,17 @@ inline constexpr effect cutting_force{
         const double cycle = 1 / s.record.scale.corner_Hz; // of the corner
         const double shortest = std::max(0.3 * cycle, 4 * s.record.period), longest = 30 * cycle;
         std::vector<std::vector<parameter>> out;
-        // From half of the rows' rate on a harmonic is another one under a second name.
-        const auto seen = [&](std::vector<parameter> start, double period) {
-            const auto many = static_cast<std::size_t>(period / (2.5 * s.record.period));
-            start.resize(std::min(start.size(), 1 + 2 * many));
-            return start;
-        };
         for (double period :
              detail::comb_periods<4>(s.residual, time, longest, shortest, s.record.score.skip)) {
             if (detail::motion_repeats(s.record.position, period / s.record.period) ||
                 detail::strokes_repeat(s.record, period) || detail::bound_to_position(s, period, time))
                 continue;
-            out.push_back(seen(detail::repeating<detail::cutting_force_harmonics, 4>(
-                                   "process.fundamental_Hz", "process.force_N", period, duration, most),
-                               period));
-            if (auto eight = seen(detail::repeating<detail::cutting_force_harmonics, 8>(
-                                      "process.fundamental_Hz", "process.force_N", period, duration, most),
-                                  period);
-                eight.size() > out.back().size())
-                out.push_back(std::move(eight));
+            const auto all = detail::repeating<detail::cutting_force_harmonics, 8>(
+                "process.fundamental_Hz", "process.force_N", period, duration, most);
+            // Near half of the rows' rate and above a harmonic is another one under a second name.
+            const auto held = std::min(8L, static_cast<long>(period / (2.5 * s.record.period)));
+            for (const long many : std::set{std::min(4L, held), held})
+                out.emplace_back(all.begin(), all.begin() + 1 + 2 * many); // period, then two a harmonic
         }
         // Where a drive's integral begins stands for any mean, unless what the drive gives was measured.
         if (s.leader.drive.has_integral() && !s.record.taps_force(s.leader.drive)) return out;

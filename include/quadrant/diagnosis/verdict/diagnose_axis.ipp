@@ -116,6 +116,23 @@ inline void measure_and_judge(axis_result& result, const axis_case& c, const how
     shrinks.measure(result, none);
 }
 
+/// What a reader of the result has to know.
+inline void add_notes(diagnosis_result& out, const axis_case& c, const axis_result& result,
+                      const std::vector<cause>& causes) {
+    note_bounds(out, result);
+    note_above_band(out, c);
+    note_digits(out, c);
+    note_limit(out, c);
+    note_denied(out, c);
+    note_cancelled(out, c);
+    note_shadow(out, c);
+    note_chatter(out, c, result);
+    note_rows_of_delay(out, c, causes);
+    note_late_velocity(out, c, causes);
+    note_excluded(out, causes);
+    note_missed(out, c);
+}
+
 QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, const progress& tell,
                                            const stages& stage, chain::two_encoders* of_transmission,
                                            const other_axes& others) {
@@ -157,17 +174,7 @@ QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, 
     add_places(result, causes, c);
     if (of_transmission) join_transmission(out, result, causes, *of_transmission);
     put_in_words(result, causes);
-    note_bounds(out, result);
-    note_above_band(out, c);
-    note_digits(out, c);
-    note_limit(out, c);
-    note_denied(out, c);
-    note_cancelled(out, c);
-    note_chatter(out, c, result);
-    note_rows_of_delay(out, c, causes);
-    note_late_velocity(out, c, causes);
-    note_excluded(out, causes);
-    note_missed(out, c);
+    add_notes(out, c, result, causes);
     out.verdict = std::max(out.verdict, result.verdict);
     if (result.verdict > verdict::within_tolerance) {
         out.causes.insert(out.causes.end(), causes.begin(), causes.end());

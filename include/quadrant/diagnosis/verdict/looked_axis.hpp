@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <fmt/format.h>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -134,8 +135,9 @@ inline void ready_axis::thin(double band, const rules& r, std::vector<std::strin
 struct loop_witness {
     const effect* against = nullptr;
     std::size_t which = 0; ///< of the names
-    bool surely = false;   ///< position and command go ten times as far from the log as without it, each
-    double error = 0;      ///< of the loop with all names
+    bool surely = false;   ///< position times command go a hundred times as far from the log as without it
+    /// Of the loop with all names; infinite where it cannot be simulated.
+    double error = std::numeric_limits<double>::infinity();
 
     explicit loop_witness(const axis_case& c) {
         if (!c.axis.controller && !c.axis.drive.closes()) return; // no loop is described
@@ -180,8 +182,9 @@ struct looked_axis {
         };
         found = look(notes);
         constexpr int most = 2; // names that are taken away
-        for (int i = 0; i < most && !found->best().effects.empty() && !found->models.over(); ++i) {
-            const loop_witness loop(*found);
+        if (found->best().effects.empty()) return;
+        loop_witness loop(*found);
+        for (int i = 0; i < most && !found->models.over(); ++i) {
             // What the owner excludes wrongly makes other names stand in for it, and is told beside them.
             if (!loop.against || excluded_instead_of(*found, loop.which).probability > 0.5) return;
             tell(fmt::format("axis {}: again, without {}", of.axis.name, loop.against->label));
@@ -189,7 +192,8 @@ struct looked_axis {
             std::vector<std::string> said;
             auto other = look(said);
             const auto left = [](const axis_case& c) { return c.models.held_out_force(c.best()); };
-            if (!loop.surely && !(loop_witness(*other).error < loop.error && left(*other) < left(*found))) {
+            const loop_witness of_other(*other);
+            if (!loop.surely && !(of_other.error < loop.error && left(*other) < left(*found))) {
                 of.excluded.by_readings.pop_back();
                 return;
             }
@@ -199,6 +203,7 @@ struct looked_axis {
                             of.axis.name, loop.against->label));
             notes.insert(notes.end(), said.begin(), said.end());
             found = std::move(other);
+            loop = of_other;
         }
     }
     /// Causes between the two encoders whose size is that of the force.

@@ -81,9 +81,8 @@ inline void note_shadow(diagnosis_result& out, const axis_case& c) {
                 c.axis.name, e->label));
 }
 
-/// Two forces over the position of which little is left together, and what is the shadow of one.
+/// Two forces over the position of which little is left together.
 inline void note_cancelled(diagnosis_result& out, const axis_case& c) {
-    note_shadow(out, c);
     for (const effect* e : c.best().effects) {
         const effect* other = cancelled_by(c, *e);
         if (!other) continue;

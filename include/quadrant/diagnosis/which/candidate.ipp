@@ -145,11 +145,12 @@ QUADRANT_DIAGNOSIS_DECL void finish(const axis_record& record, std::span<candida
             fitted.push_back(c);
         }
         c->other_ways.clear();
-        c->total = -std::numeric_limits<double>::infinity();
     }
     fit.run(std::span(courses));
     for (std::size_t i = 0; i < fitted.size(); ++i) {
-        candidate way{.effects = fitted[i]->effects, .fit = std::move(courses[i].result())};
+        candidate way{.effects = fitted[i]->effects,
+                      .fit = std::move(courses[i].result()),
+                      .total = -std::numeric_limits<double>::infinity()};
         judge(record, way);
         if (i == 0 || fitted[i] != fitted[i - 1] || way.total > fitted[i]->total) *fitted[i] = std::move(way);
     }

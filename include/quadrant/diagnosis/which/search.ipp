@@ -67,7 +67,10 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::run() const {
 QUADRANT_DIAGNOSIS_DECL bool search::explains_the_rest(const candidate& step, const candidate& best) const {
     constexpr double most = 0.2;
     const bool matters = best.effects.empty() || !record_.replayed() || !near_floor(best) || !settled(best);
-    return matters || is_beyond_tolerance(best, *step.effects.back()) ||
+    const auto is_added_beyond_tolerance = [&](const effect* e) {
+        return !has(best, e) && is_beyond_tolerance(best, *e);
+    };
+    return matters || std::any_of(step.effects.begin(), step.effects.end(), is_added_beyond_tolerance) ||
            structure(step, noise(step)) < std::max(rules_.structure, most * structure(best, noise(best)));
 }
 
