@@ -146,6 +146,8 @@
 #include "which/first_look.ipp"
 #include "which/interval.hpp"
 #include "which/interval.ipp"
+#include "which/like_machines.hpp"
+#include "which/like_machines.ipp"
 #include "which/looks.hpp"
 #include "which/looks.ipp"
 #include "which/model_fits.hpp"

@@ -2,8 +2,7 @@
 #pragma once
 #include "axis_models.hpp"
 #include "chance.hpp"
-
-#include <random>
+#include "like_machines.hpp"
 
 namespace quadrant::inline v0::diagnosis {
 
@@ -64,11 +63,8 @@ public:
     /// The same, or what the laws of its friction and of its causes may be wrong by.
     bool near_its_laws(const candidate& c) const;
 
-    /// How far apart machines are that the owner calls the same: mean square, by channel, of the innovations by
-    /// which a machine drawn from inside the tolerances differs from the calibrated one on this motion; 19 of
-    /// 20 differ less [m^2]. Only what sticks out of that cloud matters to him (docs/formats.md, `tolerance`).
-    /// The gains of a drive's loops count where what the drive gives was measured: they do not move the axis
-    /// along its path.
+    /// How far apart machines are that the owner calls the same, see cloud_of_like_machines(). Only what sticks
+    /// out of that cloud matters to him (docs/formats.md, `tolerance`).
     const std::vector<double>& tolerance_cloud() const;
     /// The same on another record, on which the calibrated machine begins like this.
     std::vector<double> tolerance_cloud(const axis_record& r, const plant_model& calibrated) const;
@@ -92,10 +88,6 @@ protected:
     static bool is_another_angle(const key_value& found, const key_value& described);
     /// Whether every harmonic of a wave ends inside its tolerance, and no other was found.
     bool is_calibration_of_wave(plant_model& fitted, const effect& e) const;
-
-    /// By how much the innovations of twenty such machines differ from those of the calibrated one [m].
-    std::vector<std::vector<double>>
-    differences_of_like_machines(const axis_record& r, const plant_model& calibrated, bool with_loops) const;
 
     /// Friction that the laws of a model give at most times: its levels, and what grows with the transmitted
     /// force [N].

@@ -110,6 +110,8 @@ QUADRANT_DIAGNOSIS_DECL bool axis_floors::at_noise(const candidate& c) const {
 }
 
 QUADRANT_DIAGNOSIS_DECL bool axis_floors::near_its_laws(const candidate& c) const {
+    // The readings show no more; what force a motor gave beside its friction is known less well than its path.
+    if (record_.closed() && structure(c, noise(c)) < rules_.structure) return true;
     // A path is fitted whole: a motion that alone shows a cause is not to be lost.
     const auto left = [&](const candidate& m) {
         return record_.closed() ? rms(residual(m)) : held_out_force(m);
@@ -119,38 +121,9 @@ QUADRANT_DIAGNOSIS_DECL bool axis_floors::near_its_laws(const candidate& c) cons
     return left(c) < std::hypot(rules_.near_floor * floor_force(c), laws);
 }
 
-QUADRANT_DIAGNOSIS_DECL std::vector<std::vector<double>>
-axis_floors::differences_of_like_machines(const axis_record& r, const plant_model& calibrated,
-                                          bool with_loops) const {
-    std::mt19937_64 random(20080901);
-    std::vector<plant_model> plants(21, calibrated); // the first is the calibrated machine itself
-    for (std::size_t j = 1; j < plants.size(); ++j)
-        for (const auto& p : calibrated_.fit.parameters) {
-            const double low = p.to_fit(p.low), high = p.to_fit(p.high);
-            const double share = static_cast<double>(random() >> 11) * 0x1p-53;
-            if (p.key != "presliding_length_m" && !is_of_record(p) && (with_loops || !is_of_feedback(p)))
-                p.of(plants[j]) = p.from_fit(low + share * (high - low));
-        }
-    std::vector<std::vector<double>> e(plants.size());
-    r.observer.run(plants, e);
-    for (std::size_t j = 1; j < e.size(); ++j)
-        for (std::size_t k = 0; k < e[j].size(); ++k) e[j][k] -= e.front()[k];
-    e.erase(e.begin());
-    return e;
-}
-
 QUADRANT_DIAGNOSIS_DECL std::vector<double> axis_floors::tolerance_cloud(const axis_record& r,
                                                                          const plant_model& calibrated) const {
-    std::vector<double> out;
-    std::array<std::vector<std::vector<double>>, 2> of; // on the motion alone; with the loops of the drive
-    for (const channel& c : r.score.channels) {
-        auto& machines = of[c.of_tap];
-        if (machines.empty()) machines = differences_of_like_machines(r, calibrated, c.of_tap);
-        std::vector<double> sizes;
-        for (const auto& e : machines) sizes.push_back(square(rms(detail::seen(e, c))));
-        out.push_back(quantile(sizes, 0.95));
-    }
-    return out;
+    return cloud_of_like_machines(r, calibrated, calibrated_.fit.parameters);
 }
 
 QUADRANT_DIAGNOSIS_DECL const std::vector<double>& axis_floors::tolerance_cloud() const {

@@ -63,10 +63,6 @@ protected:
     axis_models(const axis_record& record, const axis_description& axis, const rules& r);
     axis_models(const axis_models&) = default;
 
-    /// Whether a number is a gain of velocity loops inside the drive. The force that moves an axis along its
-    /// path does not depend on them; only a replay of the logged motion with another gain differs, by far more
-    /// than two machines would.
-    bool is_of_feedback(const parameter& p) const;
     /// Whether a number of a model is one of the description that its tolerance lets move, and none of a name.
     bool is_calibrated(const parameter& p) const;
     /// use(i, residual force of plant i), one after the other.

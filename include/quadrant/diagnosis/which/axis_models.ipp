@@ -157,11 +157,6 @@ QUADRANT_DIAGNOSIS_DECL bool axis_models::has_all(const candidate& c, const cand
     return std::all_of(of.effects.begin(), of.effects.end(), [&](const effect* e) { return has(c, e); });
 }
 
-QUADRANT_DIAGNOSIS_DECL bool axis_models::is_of_feedback(const parameter& p) const {
-    const drive_kind kind = given_.fit.plant.drive.kind;
-    return p.key.starts_with("drive.") && kind != drive_kind::position_servo;
-}
-
 QUADRANT_DIAGNOSIS_DECL std::vector<double> axis_models::residual_behind_drive(const candidate& c) const {
     std::vector<double> out;
     residuals(
