@@ -5,8 +5,12 @@
 
 #include <quadrant/diagnosis/diagnose.hpp>
 
+#include <quadrant/diagnosis/verdict/looked_axis.hpp>
+
 #include <algorithm>
+#include <array>
 #include <doctest/doctest.h>
+#include <limits>
 #include <string>
 
 using namespace workshop;
@@ -39,4 +43,23 @@ TEST_CASE("diagnose: a cogging larger than the friction beside it is no motor th
 }
 TEST_CASE("diagnose: nor is a cogging of two kilonewtons with a period of 12 mm" * doctest::test_suite("all")) {
     is_told_with_friction(2000, 0.012, 200);
+}
+TEST_CASE("loop witness: the name with which the loop goes furthest, and none that a later one brings back") {
+    using detail::accused_by_loop;
+    constexpr double never = std::numeric_limits<double>::infinity();
+    const auto far = accused_by_loop(std::array{1.0, 1.3, 900.0}, 1.2);
+    REQUIRE(far);
+    CHECK(far->which == 1);
+    CHECK(far->times == doctest::Approx(900 / 1.3));
+    CHECK_FALSE(accused_by_loop(std::array{1.0, 1000.0, 0.5}, 1.2)); // a mode beside a delay that damps it
+    const auto a_little = accused_by_loop(std::array{1.0, 1000.0, 1.5}, 1.2);
+    REQUIRE(a_little);
+    CHECK(a_little->which == 0);
+    CHECK(a_little->times == doctest::Approx(1.5));
+    CHECK_FALSE(accused_by_loop(std::array{1.0, 1.1, 1.2}, 1.2));
+    const auto unstable = accused_by_loop(std::array{1.0, never}, 100);
+    REQUIRE(unstable);
+    CHECK(unstable->times == never);
+    CHECK_FALSE(accused_by_loop(std::array{never, never}, 1.2)); // it never ran
+    CHECK_FALSE(accused_by_loop(std::array{1.0}, 1.2));
 }

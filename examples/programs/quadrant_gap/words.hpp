@@ -165,7 +165,7 @@ inline std::string left_by_calibration(const axis_result& a) {
     constexpr double closed = 1.5; // of the floor
     const bool stops = std::any_of(a.calibrated.begin(), a.calibrated.end(),
                                    [](const parameter_estimate& p) { return p.on_bound; });
-    if (a.positions_only || !(a.gap_after.force_rms_N > closed * a.gap.noise_floor_force_rms_N))
+    if (a.positions_only || !(a.gap_after.force_rms_N > closed * a.gap_after.noise_floor_force_rms_N))
         return stops
                    ? "calibrate its values; some of them stop at the end of their tolerance and may lie beyond "
                      "it (see the notes)"

@@ -63,8 +63,8 @@ inline axis_log recorded_driven(const axis_description& axis, const axis_log& mo
 /// of a measured command stands that command's noise, too: then the rounding alone.
 inline double noise_beside_rounding(const axis_description& axis, const axis_result& found, double period) {
     if (axis.actuator.command_is == command_origin::measured) return 0;
-    const double floor = residual_force_floor(axis.plant.mass_kg, 1, period, found.gap_after.bandwidth_Hz);
-    const double all = found.gap_after.noise_floor_force_rms_N / floor, count = axis.encoder.resolution_m;
+    const double floor = residual_force_floor(axis.plant.mass_kg, 1, period, found.gap.bandwidth_Hz);
+    const double all = found.gap.noise_floor_force_rms_N / floor, count = axis.encoder.resolution_m;
     return std::sqrt(std::max(0.0, all * all - count * count / 12));
 }
 

@@ -23,7 +23,7 @@ inline const effect* effect_named(std::string_view name) {
 /// As people call an effect; the name itself where the list does not have it.
 inline std::string_view label_of_effect(std::string_view name) {
     const effect* e = effect_named(name);
-    return e && !e->label.empty() ? e->label : name;
+    return e ? label_of(*e) : name;
 }
 
 /// The names of all effects, for messages.

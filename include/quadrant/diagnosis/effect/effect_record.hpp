@@ -75,6 +75,9 @@ struct effect {
     double by_another_law = 1;
 };
 
+/// As people call an effect; its name where it has no label, as the owner's own have none.
+inline std::string_view label_of(const effect& e) { return e.label.empty() ? e.name : e.label; }
+
 /// Whether the sizes of an effect are those of a wave's harmonics.
 constexpr bool is_wave(const effect& e) {
     return std::any_of(e.keys.begin(), e.keys.end(),

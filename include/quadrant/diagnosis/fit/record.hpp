@@ -81,6 +81,9 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> residual_of(const axis_record& r, co
                                                         std::span<const double> model_acceleration,
                                                         bool behind_drive = false);
 
+/// Rms of a residual force over the rows that say something.
+QUADRANT_DIAGNOSIS_DECL double rms_judged(const axis_record& r, const std::vector<double>& residual);
+
 /// The smoothed motion of a record for plants to be led along. It counts where the axis surely moves, by three
 /// counts within the response of the observer, and where the record says something.
 QUADRANT_DIAGNOSIS_DECL std::shared_ptr<const led_motion> motion_to_lead(const axis_record& r,

@@ -61,6 +61,12 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> residual_of(const axis_record& r, co
     return out;
 }
 
+QUADRANT_DIAGNOSIS_DECL double rms_judged(const axis_record& r, const std::vector<double>& residual) {
+    const auto out = static_cast<double>(std::count(r.left_out.begin(), r.left_out.end(), 1)),
+               rows = static_cast<double>(residual.size());
+    return out < rows ? rms(residual) * std::sqrt(rows / (rows - out)) : 0;
+}
+
 QUADRANT_DIAGNOSIS_DECL std::shared_ptr<const led_motion> motion_to_lead(const axis_record& r,
                                                                          const plant_model& described) {
     auto out = std::make_shared<led_motion>();

@@ -2,6 +2,9 @@
 #pragma once
 #include "predictor.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace quadrant::inline v0::diagnosis {
 
 /// Residual force M (a_model - a_measured): what the model pushes and the machine did not follow [N], both
@@ -18,6 +21,18 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> residual_force(const plant_model& pl
 /// `reaction`: of a drive whose replay is fed the position.
 QUADRANT_DIAGNOSIS_DECL double residual_force_floor(double mass, double sigma, double period,
                                                     double bandwidth_Hz, std::span<const double> reaction = {});
+
+/// The same of axes of any mass: how the squares of what a mass and what a drive's replay make of one wrong
+/// reading add up.
+struct force_floors {
+    double of_mass = 0, of_both = 0, of_reaction = 0;
+
+    force_floors() = default;
+    QUADRANT_DIAGNOSIS_DECL force_floors(double period, double bandwidth_Hz, std::span<const double> reaction);
+    double operator()(double mass, double sigma) const {
+        return sigma * std::sqrt(std::max(0.0, mass * (mass * of_mass - 2 * of_both) + of_reaction));
+    }
+};
 
 } // namespace quadrant::inline v0::diagnosis
 

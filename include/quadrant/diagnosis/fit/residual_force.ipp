@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include <numeric>
 
 namespace quadrant::inline v0::diagnosis {
 
@@ -16,16 +17,26 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> residual_force(const plant_model& pl
     return zero_phase(raw, bandwidth_Hz, period);
 }
 
-QUADRANT_DIAGNOSIS_DECL double residual_force_floor(double mass, double sigma, double period,
-                                                    double bandwidth_Hz, std::span<const double> reaction) {
+QUADRANT_DIAGNOSIS_DECL force_floors::force_floors(double period, double bandwidth_Hz,
+                                                   std::span<const double> reaction) {
     std::vector<double> impulse(reaction.empty() ? 4001 : reaction.size(), 0.0);
     const std::size_t at = impulse.size() / 2;
-    impulse[at - 1] = impulse[at + 1] = mass / (period * period);
+    impulse[at - 1] = impulse[at + 1] = 1 / (period * period);
     impulse[at] = -2 * impulse[at + 1];
-    for (std::size_t k = 0; k < reaction.size(); ++k) impulse[k] -= reaction[k];
-    double sum = 0;
-    for (double h : zero_phase(impulse, bandwidth_Hz, period)) sum += h * h;
-    return sigma * std::sqrt(sum);
+    const auto accelerates = zero_phase(impulse, bandwidth_Hz, period);
+    const auto product = [](const std::vector<double>& a, const std::vector<double>& b) {
+        return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+    };
+    of_mass = product(accelerates, accelerates);
+    if (reaction.empty()) return;
+    const auto reacts = zero_phase(std::vector<double>(reaction.begin(), reaction.end()), bandwidth_Hz, period);
+    of_both = product(accelerates, reacts);
+    of_reaction = product(reacts, reacts);
+}
+
+QUADRANT_DIAGNOSIS_DECL double residual_force_floor(double mass, double sigma, double period,
+                                                    double bandwidth_Hz, std::span<const double> reaction) {
+    return force_floors(period, bandwidth_Hz, reaction)(mass, sigma);
 }
 
 } // namespace quadrant::inline v0::diagnosis

@@ -30,6 +30,7 @@ public:
 
 private:
     struct stage {
+        double mass; ///< of the model [kg]
         std::vector<double> force;
         std::optional<closed_loop_run> loop;
     };

@@ -70,7 +70,7 @@ QUADRANT_DIAGNOSIS_DECL plant_model how_far::plant_of(const candidate& model) co
 
 QUADRANT_DIAGNOSIS_DECL how_far::stage
 how_far::at(const candidate& model, const std::optional<controller_description>& controller) const {
-    return {force(model), loop(plant_of(model), controller)};
+    return {model.fit.plant.mass, force(model), loop(plant_of(model), controller)};
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<double> how_far::force(const candidate& model) const {
@@ -190,7 +190,7 @@ QUADRANT_DIAGNOSIS_DECL gap_numbers how_far::numbers(const stage& s) const {
     const std::vector<double> all(judged_.segments, 1.0);
     gap_numbers g;
     g.force_rms_N = energy(s.force).rms(all);
-    g.noise_floor_force_rms_N = case_.floor_force();
+    g.noise_floor_force_rms_N = case_.models.floor_force(s.mass, case_.noise);
     g.bandwidth_Hz = judged_.bandwidth_Hz;
     if (s.loop) {
         const auto d = difference(s.loop->position, log_.position);

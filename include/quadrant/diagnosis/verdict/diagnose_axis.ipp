@@ -97,11 +97,13 @@ inline void suspect_by_chance(const how_far& shrinks, axis_case& c, std::vector<
     const auto once = [](const effect* e) { return e->once; };
     while (c.claims > 0) {
         const auto claims = std::span(c.best().effects).first(c.claims);
-        if (once(claims.back())) return;
-        const bool together = std::any_of(claims.begin(), claims.end(), once) ||
+        std::size_t n = c.claims; // up to the last one that other motions can hold up
+        while (n > 0 && once(claims[n - 1])) --n;
+        if (n == 0) return;
+        const bool together = n < c.claims || std::any_of(claims.begin(), claims.end(), once) ||
                               shrinks.surely_shrinks(c.models.given(), c.applied());
-        if (together && (c.claims == 1 || shrinks.surely_shrinks(c.path[c.claims - 1], c.applied()))) return;
-        to_suspects(together ? std::span(&causes[c.claims - 1], 1) : std::span(causes));
+        if (together && (c.claims == 1 || shrinks.surely_shrinks(c.path[n - 1], c.path[n]))) return;
+        to_suspects(together ? std::span(&causes[n - 1], 1) : std::span(causes));
         put_as_applied(c, causes, rivals);
     }
 }
@@ -157,7 +159,7 @@ QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, 
     if (std::any_of(causes.begin(), causes.end(), claimed)) doubt_by_loop(causes, shrinks.loop_errors());
     put_as_applied(c, causes, rivals);
     suspect_by_chance(shrinks, c, causes, rivals);
-    tell_turning_inertia(out, c, causes, others);
+    if (tell_turning_inertia(out, c, causes, others)) put_as_applied(c, causes, rivals);
     tell_linked_arm(out, c, others);
     note_few_motions(out, c);
     add_read_off(causes, c);

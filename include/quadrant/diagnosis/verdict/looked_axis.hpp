@@ -5,6 +5,7 @@
 #include "../fit/neighbour.hpp"
 #include "../fit/turned_beam.hpp"
 #include "../fit/with_drives.hpp"
+#include "../how_far/how_far.hpp"
 #include "../log/thinned.hpp"
 #include "../where/columns_in_time.hpp"
 #include "../where/places.hpp"
@@ -13,11 +14,13 @@
 #include "diagnose_axis.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <fmt/format.h>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -130,28 +133,44 @@ inline void ready_axis::thin(double band, const rules& r, std::vector<std::strin
     period *= static_cast<double>(n);
 }
 
-/// A name with which the simulated loop leaves the log. A motor that hardly answers its command predicts the
-/// readings of an axis that other forces hold, and hides their names.
+/// A name with which the simulated loop leaves the log, among the names of these errors of the loop: of the
+/// calibrated machine, then with one name more each. A later name may bring the loop back to its log.
+struct loop_accusation {
+    std::size_t which = 0;
+    double times = 0; ///< as far from the log as without it: position times command
+};
+inline std::optional<loop_accusation> accused_by_loop(std::span<const double> errors, double least) {
+    std::optional<loop_accusation> out;
+    for (std::size_t i = 1; i < errors.size(); ++i)
+        if (const double times = std::min(errors[i], errors.back()) / errors[i - 1]; times > least) {
+            least = times;
+            out = {i - 1, times};
+        }
+    return out;
+}
+
+/// What the simulated loop says of the names. A motor that hardly answers its command predicts the readings of
+/// an axis that other forces hold, and hides their names.
 struct loop_witness {
     const effect* against = nullptr;
     std::size_t which = 0; ///< of the names
-    bool surely = false;   ///< position times command go a hundred times as far from the log as without it
+    bool surely = false;   ///< a hundred times as far from the log as without it
     /// Of the loop with all names; infinite where it cannot be simulated.
     double error = std::numeric_limits<double>::infinity();
 
     explicit loop_witness(const axis_case& c) {
         if (!c.axis.controller && !c.axis.drive.closes()) return; // no loop is described
-        const std::vector<double> errors = how_far(c).loop_errors();
+        std::vector<double> errors = how_far(c).loop_errors();
         if (errors.empty()) return;
+        for (double& e : errors)
+            if (std::isnan(e)) e = std::numeric_limits<double>::infinity();
         error = errors.back();
-        constexpr double further = 1.2, far = 100; // both in one: position times command
-        const bool open = !c.at_floor() && !c.within_its_laws();
-        for (std::size_t i = 1; i < errors.size() && !against; ++i)
-            if (errors[i] > (open ? further : far) * errors[i - 1]) {
-                which = i - 1;
-                against = c.best().effects[which];
-                surely = errors[i] > far * errors[i - 1];
-            }
+        constexpr double further = 1.2, far = 100;
+        const auto accused = accused_by_loop(errors, c.at_floor() || c.within_its_laws() ? far : further);
+        if (!accused) return;
+        which = accused->which;
+        against = c.best().effects[which];
+        surely = accused->times > far;
     }
 };
 
@@ -187,20 +206,21 @@ struct looked_axis {
         for (int i = 0; i < most && !found->models.over(); ++i) {
             // What the owner excludes wrongly makes other names stand in for it, and is told beside them.
             if (!loop.against || excluded_instead_of(*found, loop.which).probability > 0.5) return;
-            tell(fmt::format("axis {}: again, without {}", of.axis.name, loop.against->label));
+            tell(fmt::format("axis {}: again, without {}", of.axis.name, label_of(*loop.against)));
             of.excluded.by_readings.emplace_back(loop.against->name);
             std::vector<std::string> said;
             auto other = look(said);
             const auto left = [](const axis_case& c) { return c.models.held_out_force(c.best()); };
             const loop_witness of_other(*other);
-            if (!loop.surely && !(of_other.error < loop.error && left(*other) < left(*found))) {
+            const bool stands = of_other.error < loop.error && left(*other) < left(*found);
+            if (other->models.cut() || (!loop.surely && !stands)) {
                 of.excluded.by_readings.pop_back();
                 return;
             }
             notes.push_back(
                 fmt::format("axis {}: {} would predict the readings, but the simulated loop does not "
                             "follow with it: looked at without it.",
-                            of.axis.name, loop.against->label));
+                            of.axis.name, label_of(*loop.against)));
             notes.insert(notes.end(), said.begin(), said.end());
             found = std::move(other);
             loop = of_other;

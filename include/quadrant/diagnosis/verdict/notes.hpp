@@ -59,7 +59,7 @@ inline void note_denied(diagnosis_result& out, const axis_case& c) {
         out.notes.push_back(fmt::format(
             "axis {}: {} would take more off this log's gap, but with it the causes predict the hold-out log "
             "worse than none: it is left out. It may be real in this motion alone.",
-            c.axis.name, e->label.empty() ? e->name : e->label));
+            c.axis.name, label_of(*e)));
 }
 
 /// A controller whose integral is not limited as the file's kind limits it.
@@ -78,7 +78,7 @@ inline void note_shadow(diagnosis_result& out, const axis_case& c) {
             out.notes.push_back(fmt::format(
                 "axis {}: the {} has the period of the cogging and lies a quarter of it aside, as where force "
                 "and position are a little late against one another: record both at one moment.",
-                c.axis.name, e->label));
+                c.axis.name, label_of(*e)));
 }
 
 /// Two forces over the position of which little is left together.
@@ -89,7 +89,7 @@ inline void note_cancelled(diagnosis_result& out, const axis_case& c) {
         out.notes.push_back(fmt::format(
             "axis {}: {} and {} cancel here: together they are smaller than either. Any curve over the "
             "position looks like two such forces.",
-            c.axis.name, e->label, other->label));
+            c.axis.name, label_of(*e), label_of(*other)));
         return;
     }
 }
@@ -151,11 +151,11 @@ inline void note_missed(diagnosis_result& out, const axis_case& c) {
     if (!c.models.over()) return;
     std::string names;
     for (const effect* e : c.models.suspects())
-        if (c.models.missed().contains(e)) names += (names.empty() ? "" : ", ") + std::string(e->label);
+        if (c.models.missed().contains(e)) (names += names.empty() ? "" : ", ") += label_of(*e);
     const std::string what = !names.empty()   ? "not tried beside what was found: " + names
                              : c.models.cut() ? "a further cause may be missing"
                                               : "no motion was searched for that would tell more";
-    out.notes.push_back(worded("axis %s: the time was up: %s.", c.axis.name.c_str(), what.c_str()));
+    out.notes.push_back(fmt::format("axis {}: the time was up: {}.", c.axis.name, what));
 }
 
 } // namespace quadrant::inline v0::diagnosis::detail

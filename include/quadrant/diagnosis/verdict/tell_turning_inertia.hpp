@@ -17,39 +17,43 @@ struct other_axes {
 };
 
 /// Of causes beside an inertia that turns with another axis' angle, those are suspects without which as little
-/// stays: less than twice the energy that stays with all of them. They stood in for it.
-inline void doubt_stand_ins(std::span<cause> causes, const axis_case& c, const other_axes& others,
+/// stays: less than twice the energy that stays with all of them. They stood in for it. Whether there are such.
+inline bool doubt_stand_ins(std::span<cause> causes, const axis_case& c, const other_axes& others,
                             const std::string& form) {
     const auto left = [&](const candidate& m) {
         const auto turning = inertia_by_angle(c, m, others.logs, others.rows_in_one);
         return square(turning ? turning->left : c.models.held_out_force(m));
     };
     const double of_all = left(c.best());
+    bool any = false;
     for (cause& x : causes)
         for (const effect* e : c.best().effects)
             if (e->name == x.effect && left(c.models.without(c.best(), e)) < 2 * of_all) {
                 to_suspects({&x, 1});
                 x.better_form = form;
+                any = true;
             }
+    return any;
 }
 
 /// Whether an inertia that turns with another axis' angle is what is left, told in a note. Where it alone
-/// leaves less than the names that were found, some of these stand in for it.
-inline void tell_turning_inertia(diagnosis_result& out, const axis_case& c, std::vector<cause>& causes,
+/// leaves less than the names that were found, some of these stand in for it. Whether causes became suspects.
+inline bool tell_turning_inertia(diagnosis_result& out, const axis_case& c, std::vector<cause>& causes,
                                  const other_axes& others) {
-    if (c.at_floor() || c.within_its_laws()) return;
+    if (c.at_floor() || c.within_its_laws()) return false;
     auto found = inertia_by_angle(c, c.path.front(), others.logs, others.rows_in_one);
     const bool instead = found && found->left < c.models.held_out_force(c.best());
     if (!instead) found = inertia_by_angle(c, c.best(), others.logs, others.rows_in_one);
-    if (!found) return;
+    if (!found) return false;
     const std::string form = fmt::format("the angle of axis {} as an inertia does", found->other);
-    if (instead) doubt_stand_ins(causes, c, others, form);
+    const bool doubted = instead && doubt_stand_ins(causes, c, others, form);
     out.notes.push_back(fmt::format(
         "axis {}: its inertia depends on the angle of axis {}: {:.3g} kg m^2 more or less, most at {:.2g} rad. "
         "That takes {:.0f} % off what {}, and a machine file cannot describe it: the inertia in it is a mean. "
         "Move axis {} alone, with {} held, for its other numbers.",
         c.axis.name, found->other, found->swing(), std::atan2(found->sine, found->cosine), 100 * found->share,
         instead ? "the machine as calibrated leaves" : "the causes leave", c.axis.name, found->other));
+    return doubted;
 }
 
 /// Whether the axis moves with another one as links of one arm do, told in a note: such a gap stays open

@@ -62,10 +62,6 @@ QUADRANT_DIAGNOSIS_DECL std::vector<std::vector<detail::rival>> rivals_by_weight
         const detail::rival* heaviest = &detail::heading(out.back());
         if (left == 0 || heaviest == &out.back().front()) continue;
         auto way = c.models.path_to(heaviest->model);
-        if (search::same(way.back(), c.best())) {
-            left = 0;
-            continue;
-        }
         // Beside the other name something else was no longer needed, and the whole explains less.
         const bool leaves_no_more = way.back().effects.size() == c.best().effects.size() &&
                                     !(c.models.held_out_force(way.back()) > c.models.held_out_force(c.best()));

@@ -128,7 +128,7 @@ public:
     bool controller_differs() const { return controller && controller->differs; }
     bool command_is_added() const { return controller_differs() && controller->is_added(); }
     bool controller_open() const { return controller_differs() && !controller->mended && !command_is_added(); }
-    double floor_force() const { return models.floor_force(noise); }
+    double floor_force() const { return models.floor_force(best()); }
     /// The described controller with the found key corrected.
     controller_description mended() const;
     /// What the corrected controller commands otherwise than this log, as a force on the axis [N]: with the

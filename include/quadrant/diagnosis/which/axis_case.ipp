@@ -116,6 +116,7 @@ axis_case::beside_stronger_friction(const plant_model& m) const {
     plant_model stronger = m;
     stronger.friction.coulomb *= 1 + law_error;
     stronger.friction.excess *= 1 + law_error;
+    stronger.friction.load *= 1 + law_error;
     return {m, path.front().fit.plant, stronger};
 }
 
@@ -189,7 +190,8 @@ QUADRANT_DIAGNOSIS_DECL axis_case::on_second axis_case::second_log(const candida
         std::vector<double> a;
         const double choices = second->observer.run(there.plant, there.innovation.rows, &a);
         fitter(second->observer, second->score).judge(there, choices);
-        *m.holdout = {-there.objective, std::move(there.ms), rms(residual_of(*second, there.plant, a))};
+        *m.holdout = {-there.objective, std::move(there.ms),
+                      rms_judged(*second, residual_of(*second, there.plant, a))};
     }
     const candidate::on_holdout& known = **m.holdout;
     const auto cloud = [&]() -> const std::vector<double>& { return cloud_of_second(); };

@@ -46,9 +46,11 @@ public:
         return true;
     }
 
-    /// The residual force that noise and rounding alone leave [N].
-    double floor_force(const candidate& c) const { return floor_force(noise(c)); }
-    double floor_force(double noise) const;
+    /// The residual force that noise and rounding alone leave of a model [N]: the larger, the heavier it is.
+    double floor_force(const candidate& c) const;
+    double floor_force(double mass, double noise) const;
+    /// The same beside held_out_force_of_described_mass().
+    double floor_force_of_described_mass(const candidate& c) const;
 
     /// Nothing is left to explain, neither in pulses nor as a slow force below the encoder's count.
     bool at_noise(const candidate& c) const;
@@ -76,9 +78,9 @@ public:
     /// reversal, but not in its own band.
     bool shrinks(const candidate& more, const candidate& less) const;
 
-    /// The path of a loop closed on this model is off by more than those of machines inside the owner's
-    /// tolerances are from one another, in one standard deviation; or what was measured behind the drive is, in
-    /// two and noise apart. Of a calibrated machine without a cause: it, or the described one.
+    /// Whether the path of a loop closed on this model is further off than paths of machines inside the owner's
+    /// tolerances differ by (one standard deviation), or what was measured behind the drive is, its noise taken
+    /// off (two). Of a calibrated machine without a cause: it, or the described one.
     bool differs_from_like_machines(const candidate& c) const;
 
 protected:
@@ -100,8 +102,9 @@ protected:
     /// start, may hold most of the residual and hide what the rest of the record shows.
     bool shrinks_in_most_segments(const candidate& more, const candidate& less) const;
 
-    mutable std::vector<double> cloud_{};            ///< found when it is asked for
-    mutable std::optional<double> floor_of_noise_{}; ///< residual force of a white noise of 1 m [N], likewise
+    mutable std::vector<double> cloud_{};           ///< found when it is asked for
+    mutable std::vector<double> cloud_of_fitted_{}; ///< likewise
+    mutable std::optional<force_floors> floors_{};  ///< likewise
 };
 
 } // namespace quadrant::inline v0::diagnosis

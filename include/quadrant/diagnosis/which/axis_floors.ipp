@@ -95,11 +95,17 @@ QUADRANT_DIAGNOSIS_DECL bool axis_floors::settled(const std::vector<std::vector<
                    [this]() -> const std::vector<double>& { return tolerance_cloud(); });
 }
 
-QUADRANT_DIAGNOSIS_DECL double axis_floors::floor_force(double noise) const {
-    if (!floor_of_noise_)
-        floor_of_noise_ = residual_force_floor(axis_.plant.mass_kg, 1, record_.period, record_.bandwidth_Hz,
-                                               record_.reaction);
-    return std::hypot(noise * *floor_of_noise_, record_.command_noise);
+QUADRANT_DIAGNOSIS_DECL double axis_floors::floor_force(const candidate& c) const {
+    return floor_force(c.fit.plant.mass, noise(c));
+}
+
+QUADRANT_DIAGNOSIS_DECL double axis_floors::floor_force_of_described_mass(const candidate& c) const {
+    return floor_force(record_.replayed() ? c.fit.plant.mass : given_.fit.plant.mass, noise(c));
+}
+
+QUADRANT_DIAGNOSIS_DECL double axis_floors::floor_force(double mass, double noise) const {
+    if (!floors_) floors_ = force_floors(record_.period, record_.bandwidth_Hz, record_.reaction);
+    return std::hypot((*floors_)(mass, noise), record_.command_noise);
 }
 
 QUADRANT_DIAGNOSIS_DECL bool axis_floors::at_noise(const candidate& c) const {
@@ -185,10 +191,12 @@ QUADRANT_DIAGNOSIS_DECL bool axis_floors::shrinks_in_most_segments(const candida
     const auto above = [&](const std::vector<double>& energy, std::size_t i) {
         return std::max(0.0, energy[i] - floor[i]);
     };
-    std::size_t falls = 0;
-    for (std::size_t i = 0; i < before.size(); ++i)
+    std::size_t falls = 0, open = 0; // at rest nothing stands above the noise
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        open += above(before, i) > 0;
         falls += above(after, i) < square(1 - rules_.least_shrink) * above(before, i);
-    return 4 * falls >= 3 * record_.segments;
+    }
+    return open >= least_segments && 4 * falls >= 3 * open;
 }
 
 QUADRANT_DIAGNOSIS_DECL bool axis_floors::differs_from_like_machines(const candidate& c) const {
@@ -199,9 +207,12 @@ QUADRANT_DIAGNOSIS_DECL bool axis_floors::differs_from_like_machines(const candi
     const candidate& before =
         c.effects.empty() && mean_of(given_.fit.ms.front()) > mean_of(c.fit.ms.front()) ? given_ : c;
     if (mean_of(before.fit.ms.front()) > tolerance_cloud().front() / 4) return true;
-    const auto& channels = record_.score.channels;
-    for (std::size_t i = 0; i < channels.size(); ++i) // the law of the drive is exact
-        if (channels[i].of_tap && left_in(c.fit.ms[i], channels[i], noise(c)) > tolerance_cloud()[i])
+    const auto& channels = record_.score.channels; // the law of the drive is exact
+    if (std::none_of(channels.begin(), channels.end(), [](const channel& x) { return x.of_tap; })) return false;
+    if (cloud_of_fitted_.empty())
+        cloud_of_fitted_ = cloud_of_fitted_machines(record_, calibrated_.fit.plant, calibrated_.fit.parameters);
+    for (std::size_t i = 0; i < channels.size(); ++i)
+        if (channels[i].of_tap && left_in(c.fit.ms[i], channels[i], noise(c)) > cloud_of_fitted_[i])
             return true;
     return false;
 }

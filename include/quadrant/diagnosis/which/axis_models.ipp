@@ -79,7 +79,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> axis_models::held_out_residual(const
 }
 
 QUADRANT_DIAGNOSIS_DECL double axis_models::held_out_force(const candidate& c) const {
-    if (!*c.held_out_force) *c.held_out_force = rms(held_out_residual(c));
+    if (!*c.held_out_force) *c.held_out_force = rms_judged(record_, held_out_residual(c));
     return **c.held_out_force;
 }
 

@@ -18,9 +18,9 @@ inline bool answers_between_rows(const axis_description& a, const axis_log& log,
     return !shows_the_force(a, log) && a.answer_of_loop() < period;
 }
 
-/// How far it is open when the force of a row acts [s]: half of a row at most, between a command that is held
-/// until the next row and one that goes there in a line. What the motion says of it is known to twice its
-/// standard deviation.
+/// How uncertain the moment is at which the force of a row acts [s]: half of a row at most, between a command
+/// that is held until the next row and one that goes there in a line. What the motion says of it is known to
+/// twice its standard deviation.
 inline double doubt_of_time(const axis_case& c) {
     const command_timing t = timing_of_command(c.log, c.record.period, c.axis.plant);
     const double half = c.record.period / 2;

@@ -33,8 +33,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<place> block_places(const axis_case& c) {
     for (std::size_t i = 0; i < c.best().effects.size(); ++i) {
         const auto after = energy(c.models.held_out_residual(c.path[i + 1]));
         const effect& e = *c.best().effects[i];
-        out.push_back({"block", std::string(e.box),
-                       std::string(e.label.empty() ? e.name : e.label) + " takes this share off",
+        out.push_back({"block", std::string(e.box), std::string(label_of(e)) + " takes this share off",
                        share([&](const auto& w) { return square(before.rms(w)) - square(after.rms(w)); }),
                        "causes"});
         before = after;

@@ -19,7 +19,7 @@ struct candidate {
     /// For flexibility: 1/2 ln(blocks) for each parameter that no owner knows, and its choices; and for what is
     /// rare.
     double penalty = 0;
-    double total = 0;                     ///< their sum without the penalty
+    double total = 0;                     ///< sum of `held_out`, less `penalty`
     std::vector<Eigen::VectorXd> leave{}; ///< parameters without each fold, in fit coordinates
     Eigen::MatrixXd curvature{};          ///< of the score, without what the owner knows
     Eigen::MatrixXd gradient{};           ///< of the score, one column a motion segment

@@ -4,10 +4,16 @@
 
 namespace quadrant::inline v0::diagnosis::detail {
 
+/// Whether a number says after what way or time something repeats.
+inline bool is_cycle(const parameter_estimate& p) {
+    return p.key.find("frequency") != p.key.npos || p.key.find("period") != p.key.npos ||
+           p.key == "process.fundamental_Hz";
+}
+
 QUADRANT_DIAGNOSIS_DECL void in_lowest_terms(std::vector<parameter_estimate>& values) {
     parameter_estimate *cycle = nullptr, *phases = nullptr, *sizes = nullptr;
     for (parameter_estimate& p : values) {
-        if (p.key.find("period") != p.key.npos || p.key == "process.fundamental_Hz") cycle = &p;
+        if (is_cycle(p)) cycle = &p;
         if (p.key.ends_with("phase_rad")) phases = &p;
     }
     for (parameter_estimate& p : values)
@@ -34,7 +40,10 @@ QUADRANT_DIAGNOSIS_DECL void add_model_error(std::vector<parameter_estimate>& va
     for (auto& p : values)
         for (estimate& v : p.values) {
             const double part = relative * (p.key.ends_with("_rad") ? 1.0 : std::abs(v.value));
-            const double error = std::hypot(part, p.key.ends_with("_m") ? 0.5 * c.resolution : 0.0);
+            const machine_key* key = key_named(p.key);
+            // A length on a rotary axis is not read by its encoder.
+            const bool counts = p.key.ends_with("_m") && !(key && key->same_when_rotary);
+            const double error = std::hypot(part, counts ? 0.5 * c.resolution : 0.0);
             v.low = v.value - std::hypot(v.value - v.low, error);
             v.high = v.value + std::hypot(v.high - v.value, error);
         }
@@ -54,8 +63,7 @@ QUADRANT_DIAGNOSIS_DECL void widen(std::vector<parameter_estimate>& mine,
 
 QUADRANT_DIAGNOSIS_DECL bool is_undetermined(const std::vector<parameter_estimate>& values) {
     return std::any_of(values.begin(), values.end(), [](const parameter_estimate& p) {
-        const bool cycle = p.key.find("frequency") != p.key.npos || p.key.find("period") != p.key.npos;
-        return cycle && p.values[0].high - p.values[0].low > 2 * p.values[0].value;
+        return is_cycle(p) && p.values[0].high - p.values[0].low > 2 * p.values[0].value;
     });
 }
 

@@ -77,13 +77,13 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
                 named.better_form = r.name->name;
             }
         }
+        const bool undetermined = detail::is_undetermined(named.parameters); // by its own scatter
         // Where another cause has a second reading, this one's values under that reading belong to its
         // interval.
         for (std::size_t j = 0; j < rivals.size(); ++j)
             for (const auto& r : rivals[j])
-                if (j != i && r.same && r.name != effects[j])
+                if (j != i && r.same && !r.unlikely && r.name != effects[j])
                     detail::widen(named.parameters, estimates(r.model, e, c.record.score));
-        const bool undetermined = detail::is_undetermined(named.parameters); // by its own scatter
         const bool absent = !named.described && detail::may_be_absent(c.best(), e, c.record.score);
         // What is left beside a cause may have moved its values, unless the cause explains more.
         bool as_described = detail::is_as_described(named, e, as_given);

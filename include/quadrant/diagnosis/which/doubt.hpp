@@ -5,7 +5,7 @@
 
 namespace quadrant::inline v0::diagnosis::detail {
 
-/// What is left above the noise beside it.
+/// Force that the best model leaves above the noise, over what cause number `which` explains.
 QUADRANT_DIAGNOSIS_DECL double left_beside(const axis_case& c, std::size_t which);
 /// The same beside `explained` [N], with what the laws of the other causes may leave: none is better than some
 /// five per cent of what it explains. What does not matter to the owner counts against a cause that explains
@@ -20,8 +20,8 @@ QUADRANT_DIAGNOSIS_DECL double left_of_paths(const axis_case& c, std::size_t whi
 /// The same of what was measured behind the drive, above its noise, where it explains most; infinite: nothing
 /// was measured there, or the cause explains none of it.
 QUADRANT_DIAGNOSIS_DECL double left_behind_drive(const axis_case& c, std::size_t which);
-/// In the readings in which less is left: a gain of the drive may be sure in its duty, where the tolerances
-/// allow any such path.
+/// The smaller of the two: a gain of the drive may be sure in the measured duty although the tolerances allow
+/// the path.
 QUADRANT_DIAGNOSIS_DECL double left_of_readings(const axis_case& c, std::size_t which);
 
 /// The probability that the cause is none of the suspects: on the log, beside what the name explains here or
@@ -56,9 +56,9 @@ QUADRANT_DIAGNOSIS_DECL bool may_be_inside_its_tolerance(const axis_case& c,
 /// noise.
 QUADRANT_DIAGNOSIS_DECL bool may_be_friction(const axis_case& c, const effect& e);
 
-/// Whether, on a machine that is within the owner's tolerances without any cause, an effect with all other
-/// numbers kept does less than twice of what is left, in every band: it led the fit, and the
-/// others took the rest off.
+/// Whether, on a machine that is within the owner's tolerances without any cause, an effect changes the
+/// innovations in every band by less than twice what the best model leaves: then the other numbers did the
+/// work.
 QUADRANT_DIAGNOSIS_DECL bool drowns_in_the_rest(const axis_case& c, const effect& e);
 
 /// Of a force over the position another one that cancels it: together they are smaller than either. What is

@@ -113,11 +113,12 @@ QUADRANT_DIAGNOSIS_DECL double unknown(const axis_case& c, std::size_t which) {
     const auto before = c.second_log(without_standing(c, which)), after = c.second_log(c.best());
     const double gain = std::clamp((after.score - before.score) / score_temperature, -50.0, 0.0);
     const auto with_gain = [&](double out) { return 1 / (1 + (1 - out) / out * std::exp(gain)); };
-    // What predicts another motion worse than the machine file does is no cause of both.
+    // What predicts another motion worse than the machine file does is no cause of both. A force hardly moves
+    // the path of a stiff loop: there a hair says nothing.
     constexpr double doubt = 0.6;
     if (c.axis.drive.takes_position() && c.log.drive &&
         beside_path(*c.second, restarted(c.best().fit.plant, *c.second)) >
-            beside_path(*c.second, restarted(c.models.given().fit.plant, *c.second)))
+            square(1 + law_error) * beside_path(*c.second, restarted(c.models.given().fit.plant, *c.second)))
         return doubt;
     if (c.record.closed()) return with_gain(by_chance(names, c.excused ? 0 : left_of_readings(c, which)));
     const double machine = c.second_log(c.path.front()).force; // calibrated, without any cause
@@ -158,8 +159,10 @@ QUADRANT_DIAGNOSIS_DECL excluded_rival excluded_instead_of(const axis_case& c, s
     std::vector<const effect*> others = c.best().effects;
     std::erase(others, own);
     std::vector<candidate> models = c.models.with_excluded(c.path.front());
-    if (!others.empty())
-        for (candidate& m : c.models.with_excluded(c.models.with(others))) models.push_back(std::move(m));
+    if (!others.empty()) {
+        const auto& beside = c.models.with_excluded(c.models.with(others));
+        models.insert(models.end(), beside.begin(), beside.end());
+    }
     std::erase_if(models, [&](const candidate& m) { return contains(m, c.best(), *own); });
     const auto score = [&](const candidate& m) {
         return m.total + (c.tested_apart() ? c.second_log(m).score : 0);

@@ -11,10 +11,14 @@ namespace quadrant::inline v0::diagnosis {
 /// How far apart machines are that the owner calls the same: mean square, by channel, of the innovations by
 /// which a machine drawn from inside the bounds of these numbers differs from the calibrated one on the motion
 /// of a record; 19 of 20 differ less [m^2]. The gains of a drive's loops count where what the drive gives was
-/// measured: they do not move the axis along its path. There, numbers of the record are fitted to every
-/// machine; what these would take off a difference is none.
+/// measured: they do not move the axis along its path.
 QUADRANT_DIAGNOSIS_DECL std::vector<double>
 cloud_of_like_machines(const axis_record& r, const plant_model& calibrated, std::span<const parameter> numbers);
+/// The same behind a drive where numbers of the record are fitted to every machine, as a search fits them: what
+/// these take off a difference is none.
+QUADRANT_DIAGNOSIS_DECL std::vector<double> cloud_of_fitted_machines(const axis_record& r,
+                                                                     const plant_model& calibrated,
+                                                                     std::span<const parameter> numbers);
 
 namespace detail {
 

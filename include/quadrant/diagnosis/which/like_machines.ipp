@@ -73,17 +73,14 @@ QUADRANT_DIAGNOSIS_DECL void take_out_numbers_of_record(std::vector<std::vector<
     }
 }
 
-} // namespace detail
-
-QUADRANT_DIAGNOSIS_DECL std::vector<double> cloud_of_like_machines(const axis_record& r,
-                                                                   const plant_model& calibrated,
-                                                                   std::span<const parameter> numbers) {
+inline std::vector<double> cloud_of(const axis_record& r, const plant_model& calibrated,
+                                    std::span<const parameter> numbers, bool fitted) {
     std::vector<double> out;
     std::array<std::vector<std::vector<double>>, 2> of; // on the motion alone; with the loops of the drive
     for (const channel& c : r.score.channels) {
         auto& differences = of[c.of_tap];
         if (differences.empty()) {
-            auto plants = detail::like_machines(calibrated, numbers, c.of_tap);
+            auto plants = like_machines(calibrated, numbers, c.of_tap);
             plants.push_back(calibrated);
             differences.resize(plants.size());
             r.observer.run(plants, differences);
@@ -91,13 +88,27 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> cloud_of_like_machines(const axis_re
             differences.pop_back();
             for (auto& e : differences)
                 for (std::size_t k = 0; k < e.size(); ++k) e[k] -= own[k];
-            if (c.of_tap) detail::take_out_numbers_of_record(differences, r, calibrated, numbers);
+            if (fitted && c.of_tap) take_out_numbers_of_record(differences, r, calibrated, numbers);
         }
         std::vector<double> sizes;
-        for (const auto& e : differences) sizes.push_back(square(rms(detail::seen(e, c))));
+        for (const auto& e : differences) sizes.push_back(square(rms(seen(e, c))));
         out.push_back(quantile(sizes, 0.95));
     }
     return out;
+}
+
+} // namespace detail
+
+QUADRANT_DIAGNOSIS_DECL std::vector<double> cloud_of_like_machines(const axis_record& r,
+                                                                   const plant_model& calibrated,
+                                                                   std::span<const parameter> numbers) {
+    return detail::cloud_of(r, calibrated, numbers, false);
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<double> cloud_of_fitted_machines(const axis_record& r,
+                                                                     const plant_model& calibrated,
+                                                                     std::span<const parameter> numbers) {
+    return detail::cloud_of(r, calibrated, numbers, true);
 }
 
 } // namespace quadrant::inline v0::diagnosis

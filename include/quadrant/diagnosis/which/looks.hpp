@@ -17,7 +17,7 @@ struct looked_at {
         &apart;          ///< the log itself, where `log` is both motions together
     const axis_log* holdout;
     bool both; ///< log and hold-out log are fitted together
-    bool soft; ///< a servo's law on duty: a force moves it where it shows
+    bool soft; ///< evaluated on its path: the loop is so soft that a force moves it
     double period;
     const exclusions& excluded;
     const rules& limits;

@@ -116,7 +116,7 @@ inline bool hides_what_the_other_shows(const axis_case& c) {
 inline std::optional<tap_reading> other_tap(const axis_case& c) {
     const auto& effects = c.best().effects;
     const plant_model& plant = c.best().fit.plant;
-    if (!c.record.taps_force(plant.drive) || c.record.tap || effects.empty()) return {};
+    if (!c.record.taps_force(plant.drive) || c.record.tap || effects.empty() || c.models.over()) return {};
     const fitter fit(c.record.observer, c.record.score);
     const tap_reading way =
         best_tap(fit, *c.record.observer.drive, plant, resumed(c.best().fit), c.record.bandwidth_Hz);
@@ -144,7 +144,7 @@ inline const char* in_words(tap_reading way) {
 inline void take_other_tap(std::unique_ptr<axis_case>& found, std::unique_ptr<axis_case> other, double margin,
                            std::vector<std::string>& notes) {
     const bool fewer = other->best().effects.size() < found->best().effects.size();
-    if (!(other->best().total > found->best().total + (fewer ? 0 : margin))) return;
+    if (other->models.cut() || !(other->best().total > found->best().total + (fewer ? 0 : margin))) return;
     found = std::move(other);
     notes.push_back(fmt::format("axis {}: what was measured in the drive is taken as {}: that fits better "
                                 "beside what was found, or as well without a cause.",
@@ -170,7 +170,7 @@ look_at(const looked_at& of, const std::string& file, const progress& tell, std:
         if (!*again.why) return "";
         tell("axis " + of.axis.name + ": again, along the measured motion");
         auto led = look(held_by::motion, found.get(), exchanged);
-        if (!(led->left_along_motion() < again.leaves_at_most)) return "";
+        if (led->models.cut() || !(led->left_along_motion() < again.leaves_at_most)) return "";
         found = std::move(led);
         return again.why;
     };
@@ -189,7 +189,8 @@ look_at(const looked_at& of, const std::string& file, const progress& tell, std:
     if (!of.both && hides_what_the_other_shows(*found)) {
         tell("axis " + of.axis.name + ": again, fitted to the hold-out log");
         auto exchanged = look(held_by::readings, nullptr, true);
-        if (exchanged->at_floor() || left_in_both(*exchanged) < (1 - least_shrink) * left_in_both(*found)) {
+        if (!exchanged->models.cut() &&
+            (exchanged->at_floor() || left_in_both(*exchanged) < (1 - least_shrink) * left_in_both(*found))) {
             notes.push_back(fmt::format("axis {}: fitted to the hold-out log and judged on the log: "
                                         "what is wrong shows in the motion of "
                                         "the hold-out log only.",

@@ -25,7 +25,7 @@ protected:
 
     /// Moves the numbers of a model to those of another plant, where the fit goes on.
     static void begin_at(candidate& c, plant_model known);
-    /// How many times the looks and finalists of a long record this one affords.
+    /// By which factor a short record may have more looks and finalists than a long one.
     std::size_t effort() const;
     /// From each start.
     int steps_of_a_look() const {
@@ -89,8 +89,8 @@ protected:
     /// cause that had taken most of its force, that says too little.
     static bool ends_short_of(const candidate& c, const candidate& part);
     /// A model that scores worse than one of its parts stopped short, or whose search ended short of what that
-    /// part found: it is fitted again with what the part lacks, from the part's numbers; all of these side by
-    /// side. `from`: where their own fits began.
+    /// part found: it is fitted again with what the part lacks, from the part's numbers. All of these are
+    /// sketched one after the other and fitted side by side. `from`: where their own fits began.
     void mend_from_parts(std::vector<candidate>& models, const std::vector<std::size_t>& which,
                          const candidate& from) const;
 

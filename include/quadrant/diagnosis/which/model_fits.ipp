@@ -13,7 +13,7 @@ QUADRANT_DIAGNOSIS_DECL std::string model_fits::names_of(std::span<const std::si
     std::string out;
     for (const std::size_t i : some) {
         const effect& added = *models[i].effects.back();
-        (out += out.empty() ? "" : ", ") += added.label.empty() ? added.name : added.label;
+        (out += out.empty() ? "" : ", ") += label_of(added);
     }
     return out;
 }
@@ -155,7 +155,7 @@ QUADRANT_DIAGNOSIS_DECL const candidate* model_fits::tried(const candidate& from
 
 QUADRANT_DIAGNOSIS_DECL std::string model_fits::describe(const candidate& c) const {
     std::string out;
-    for (const effect* e : c.effects) (out += out.empty() ? "" : ", ") += e->label.empty() ? e->name : e->label;
+    for (const effect* e : c.effects) (out += out.empty() ? "" : ", ") += label_of(*e);
     if (!std::isfinite(c.total)) return out += ": this record does not show it";
     return (out += ": gain ") += std::to_string(static_cast<long>(c.total - calibrated_.total));
 }

@@ -17,7 +17,7 @@ struct rival {
     const effect* name = nullptr;
     double weight = 0;
     bool same = false;         ///< not distinguished from the cause by this record
-    bool unlikely = false;     ///< then: beside the others that are not; not told
+    bool unlikely = false;     ///< of those: too unlikely to be reported
     bool of_one_speed = false; ///< the motion has one speed, at which it is one law with the cause
 
     bool unlisted() const { return name->box.empty(); } ///< a form that no name stands for
@@ -57,8 +57,8 @@ QUADRANT_DIAGNOSIS_DECL bool contains(const candidate& model, const candidate& o
 
 /// Force that takes `before` to `after`, in energy.
 QUADRANT_DIAGNOSIS_DECL double between(double before, double after);
-/// The least force that the calibrated machine and the models on the way to cause number `which` leave: what a
-/// name takes off of what another one put on is not explained by it.
+/// The least force that the calibrated machine and the models on the way to cause number `which` leave: a name
+/// gets no credit for undoing what another name made worse.
 template <typename Force> double least_before(const axis_case& c, std::size_t which, const Force& force) {
     double out = force(c.path.front());
     for (std::size_t i = 1; i <= which; ++i) out = std::min(out, force(c.path[i]));

@@ -143,16 +143,18 @@ public:
           energy_(square(c.models.held_out_force_of_described_mass(c.best()))),
           least_(without.total + c.limits.margin), explained_(square(law_error * explained_by(c, which))),
           by_speed_(of_one_speed(c.record) ? square(one_speed * explained_by(c, which)) : 0) {
-        if (!c.settled) unexplained_ = std::max(0.0, energy_ - square(c.floor_force()));
+        const double floor = c.models.floor_force_of_described_mass(c.best());
+        if (!c.settled) unexplained_ = std::max(0.0, energy_ - square(floor));
         if (c.tested_apart()) there_ = square(c.second_log(c.best()).force);
         unexplained_there_ = there_ - square(c.floor_force());
         if (!c.record.observer.led && !c.record.replayed() && shows_along_motion(c.best()))
             along_ = along_motion(c.best());
-        if (!(along_ > c.limits.near_floor * c.floor_force())) along_ = 0;
+        if (!(along_ > c.limits.near_floor * floor)) along_ = 0;
     }
 
-    /// Weight of a name, and whether the record distinguishes it from the `first`, the cause itself.
-    void weigh(rival& r, rival& first) const {
+    /// Weight of a name, and whether the record distinguishes it from the `first`, the cause itself. What it
+    /// makes of the weight of that: `of_first`, for when every name has its own.
+    void weigh(rival& r, const rival& first, double& of_first) const {
         const candidate& best = case_.best();
         // A name that corrects nothing is no rival. Two whose difference is smaller than what both leave
         // unexplained are not distinguished by it, nor are two that are one model (docs/formats.md) while their
@@ -184,7 +186,7 @@ public:
         if (equivalent && within && case_.record.replayed()) {
             const double less = excess_of_own(r.model);
             r.weight = std::max(r.weight, commoner * std::exp(-more) * first.weight);
-            if (&r != &first) first.weight = std::max(first.weight, std::exp(-less) / commoner * r.weight);
+            if (&r != &first) of_first = std::max(of_first, std::exp(-less) / commoner * r.weight);
         }
         if (r.of_one_speed) r.weight = commoner * first.weight;
         const bool follows = pays && &r != &first && follows_the_motion(r) && stands_in(r, first);
@@ -253,7 +255,9 @@ QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::si
     std::vector<rival> out = in_its_place(c, which, without);
     weigh(out, c);
     const left_by_names left(c, which, without);
-    for (rival& r : out) left.weigh(r, out.front());
+    double of_first = 0;
+    for (rival& r : out) left.weigh(r, out.front(), of_first);
+    out.front().weight = std::max(out.front().weight, of_first);
     share_out(out, c);
     return out;
 }

@@ -38,8 +38,7 @@ public:
         return *best;
     }
     /// The most that a model is worth that was tried and has none of these effects, nor one that holds one of
-    /// them. Forms without a name hold too much to count, and so little does a model whose score is below
-    /// `least`.
+    /// them. Free forms, and models that score below `least`, are left out.
     template <class Worth>
     double best_without(const std::vector<const effect*>& names, double least, const Worth& worth) const {
         const auto has_one = [&](const candidate& c) {
@@ -75,6 +74,10 @@ private:
     /// The suspects whose number is beyond its tolerance: where nothing that would matter is left, such a
     /// number alone may still be missing.
     std::vector<const effect*> beyond_tolerance(const candidate& c) const;
+    void fit_to_the_end(candidate& best) const;
+    /// Two at once of the best single effects: what two do to the force may cancel, and then neither pays
+    /// alone. `single`: sorted.
+    std::vector<candidate> in_pairs(std::vector<candidate> single) const;
     /// Where freeing a number of the machine file does better although it stays inside the tolerance, the fit
     /// of `best` stopped short (a play or a contact makes its score rough): it goes on from there. True: it got
     /// better.

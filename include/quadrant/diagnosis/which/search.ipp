@@ -42,26 +42,37 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::run() const {
             continue;
         }
         if (!best.effects.empty() || immaterial(best) || over()) break;
-        // What two effects do to the force may cancel: then neither pays alone.
-        const std::vector<candidate> single(
-            next.begin(), next.begin() + static_cast<std::ptrdiff_t>(std::min(rules_.in_pairs, next.size())));
-        next.clear();
-        for (std::size_t i = 0; i < single.size() && !over(); ++i) {
-            std::vector<const effect*> others;
-            for (std::size_t j = i + 1; j < single.size(); ++j)
-                if (!has(single[i], single[j].effects.back())) others.push_back(single[j].effects.back());
-            add(with_these(single[i], others));
-        }
+        next = in_pairs(next);
         step = paying(next, best);
-        if (!step || best.effects.size() + 2 > rules_.most_causes) break;
+        if (!step) break;
         best = *step;
         beam.assign(1, best);
     }
     best = by_the_scale(best);
     cut_ = over();
+    if (cut_ && !best.effects.empty()) fit_to_the_end(best); // a first look may be all that there was time for
     // What does not take the gap of the machine file down explains nothing, however well it scores.
     if (!best.effects.empty() && !shrinks(best, given_)) best = calibrated_;
     return path_to(best);
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::in_pairs(std::vector<candidate> single) const {
+    std::erase_if(single, [](const candidate& c) { return c.effects.size() > 1; });
+    single.resize(std::min(rules_.in_pairs, single.size()));
+    std::vector<candidate> out;
+    for (std::size_t i = 0; i < single.size() && !over(); ++i) {
+        std::vector<const effect*> others;
+        for (std::size_t j = i + 1; j < single.size(); ++j)
+            if (!has(single[i], single[j].effects.back())) others.push_back(single[j].effects.back());
+        for (candidate& c : with_these(single[i], others)) out.push_back(std::move(c));
+    }
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL void search::fit_to_the_end(candidate& best) const {
+    finish(record_, best);
+    for (candidate& known : tried_)
+        if (same(known, best)) known = best;
 }
 
 QUADRANT_DIAGNOSIS_DECL bool search::explains_the_rest(const candidate& step, const candidate& best) const {
@@ -135,17 +146,25 @@ QUADRANT_DIAGNOSIS_DECL bool search::calibrate_again(candidate& best,
                                                      const std::vector<candidate>& next) const {
     if (best.effects.empty()) return false;
     const candidate* better = nullptr;
+    const auto is_calibrated_beside = [&](const candidate& c) {
+        const auto added =
+            std::find_if(c.effects.begin(), c.effects.end(), [&](const effect* e) { return !has(best, e); });
+        return c.effects.size() == best.effects.size() + 1 && has_all(c, best) && is_calibration(c, *added);
+    };
     for (const candidate& c : next)
-        if (c.effects.size() == best.effects.size() + 1 && is_calibration(c, c.effects.back()) &&
-            c.total > best.total + rules_.margin && (!better || c.total > better->total))
+        if (c.total > best.total + rules_.margin && (!better || c.total > better->total) &&
+            is_calibrated_beside(c))
             better = &c;
     if (!better) return false;
     candidate again = best;
     begin_at(again, better->fit.plant);
     finish(record_, again);
     if (!(again.total > best.total + rules_.margin)) return false;
-    for (candidate& known : tried_)
-        if (same(known, again)) known = again;
+    // What gained beside it had gone on from where the fit had stopped.
+    const double gained = best.total + rules_.margin;
+    std::erase_if(tried_,
+                  [&](const candidate& c) { return same(c, best) || (has_all(c, best) && c.total > gained); });
+    tried_.push_back(again);
     best = std::move(again);
     return true;
 }
@@ -166,6 +185,7 @@ QUADRANT_DIAGNOSIS_DECL bool search::goes_on_without(candidate& best, const cand
     if (best.effects.empty()) {
         calibrated_ = again;
         cloud_.clear();
+        cloud_of_fitted_.clear();
     } else {
         tried_.push_back(again);
     }
@@ -192,16 +212,16 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::everyday(const candidate&
         const auto known = std::find_if(tried_.begin(), tried_.end(), [&](const candidate& c) {
             return std::isfinite(c.total) && same(c, from);
         });
-        if (!set.empty() && known != tried_.end()) with_these(*known, later);
+        if (!set.empty() && known != tried_.end() && !over()) with_these(*known, later);
     }
     std::vector<candidate> out;
-    for (std::size_t set = 3; set < (std::size_t{1} << each.size()); ++set) {
+    for (std::size_t set = 3; set < (std::size_t{1} << each.size()) && !over(); ++set) {
         std::vector<const effect*> some;
         for (std::size_t i = 0; i < each.size(); ++i)
             if (set >> i & 1) some.push_back(each[i]);
         if (some.size() > 1) out.push_back(with(some));
     }
-    if (!single.effects.empty() && !single.effects.front()->everyday) {
+    if (!single.effects.empty() && !single.effects.front()->everyday && !over()) {
         const std::vector<candidate> beside = with_these(single, each);
         out.insert(out.end(), beside.begin(), beside.end());
     }

@@ -10,13 +10,15 @@
 namespace quadrant::inline v0::diagnosis::detail {
 
 /// Whether two waves have one period, but for half a line of the spectrum over this travel, and the second one
-/// lies a quarter of it aside, as far as either phase is known.
+/// lies a quarter of it aside, as far as either phase is known: in the harmonic that is the first one's
+/// largest.
 inline bool lies_a_quarter_aside(const harmonics& wave, const harmonics& other, double travel) {
     constexpr double aside = 0.35; // cosine of 70 degrees
-    const auto phases = wave.phases(), of_other = other.phases();
-    return !phases.empty() && !of_other.empty() &&
+    const auto sizes = wave.sizes(), phases = wave.phases(), of_other = other.phases();
+    const auto largest = static_cast<std::size_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
+    return largest < std::min(sizes.size(), of_other.size()) &&
            std::abs(1 / wave.period - 1 / other.period) < 0.5 / travel &&
-           std::abs(std::cos(phases.front() - of_other.front())) < aside;
+           std::abs(std::cos(phases[largest] - of_other[largest])) < aside;
 }
 
 /// Whether a friction along the travel is the shadow of a cogging: where force and position are late against

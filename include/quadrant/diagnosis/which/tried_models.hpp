@@ -3,12 +3,13 @@
 #include "../effect/exclusions.hpp"
 #include "model_fits.hpp"
 
+#include <deque>
 #include <set>
 
 namespace quadrant::inline v0::diagnosis {
 
 /// The models of an axis that are tried: with one of the suspects more, with one less, with one exchanged for
-/// another. No set of effects is fitted twice.
+/// another. A set that was tried is looked up; a few rules fit it again from other numbers and keep the better.
 class tried_models : public model_fits {
 public:
     /// `from` with each of the suspects that it lacks, the most promising after a first look fitted to the end,
@@ -44,7 +45,7 @@ public:
 
     /// `from` with each of the effects that the owner excludes, and would be suspects otherwise: they are never
     /// named, but what explains the record far better than a name speaks against the name.
-    std::vector<candidate> with_excluded(const candidate& from) const;
+    const std::vector<candidate>& with_excluded(const candidate& from) const;
 
     /// The forms without a name that compete. Along a motion a force that follows the command takes the command
     /// itself away, and would explain every record.
@@ -80,6 +81,12 @@ protected:
         candidate model;
     };
     mutable std::vector<shorter> shorter_{};
+    /// What with_excluded() found on top of a model.
+    struct beside_excluded {
+        candidate from;
+        std::vector<candidate> models;
+    };
+    mutable std::deque<beside_excluded> excluded_models_{}; ///< does not move what it holds
 };
 
 } // namespace quadrant::inline v0::diagnosis

@@ -166,7 +166,8 @@ tried_models::without_each(const candidate& whole, const std::vector<const effec
 QUADRANT_DIAGNOSIS_DECL std::vector<candidate>
 tried_models::exchanged(const candidate& whole, const effect* own,
                         const std::vector<const effect*>& added) const {
-    const candidate from = taken_off(whole, own);
+    candidate from = taken_off(whole, own);
+    fitter(record_.observer, record_.score).evaluate(from.fit); // what it is worth as it stands
     std::vector<candidate> out;
     std::vector<std::size_t> all;
     for (const effect* e : added) {
@@ -198,7 +199,9 @@ QUADRANT_DIAGNOSIS_DECL std::vector<const effect*> tried_models::suspects() cons
     return out;
 }
 
-QUADRANT_DIAGNOSIS_DECL std::vector<candidate> tried_models::with_excluded(const candidate& from) const {
+QUADRANT_DIAGNOSIS_DECL const std::vector<candidate>& tried_models::with_excluded(const candidate& from) const {
+    for (const beside_excluded& known : excluded_models_)
+        if (same(known.from, from)) return known.models;
     std::vector<candidate> out;
     std::vector<std::size_t> which;
     for (const effect* e : every_effect())
@@ -209,7 +212,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> tried_models::with_excluded(const
     sketch_each(from, which, out, when_late::leave_out);
     finish_best(which, rules_.finalists, out, when_late::leave_out);
     std::erase_if(out, [](const candidate& c) { return c.missed || !std::isfinite(c.total); });
-    return out;
+    excluded_models_.push_back({{.effects = from.effects}, std::move(out)});
+    return excluded_models_.back().models;
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<const effect*> tried_models::forms() const {
