@@ -27,3 +27,17 @@ TEST_CASE("folds: where a number of a valley meets its bound, the others stop wi
         CHECK(std::abs(step[1] - step[0]) < 1e-5);
     }
 }
+TEST_CASE("folds: behind a drive's replay what a fold alone shows stays where it is without it") {
+    // The first number shows in the first fold alone, and hardly pulls at the others; the second one in all.
+    detail::fold_sums sums;
+    sums.all = {Eigen::Vector2d(1e4 + 1, 5e3).asDiagonal(), Eigen::VectorXd::Zero(2)};
+    sums.of.fill({Eigen::MatrixXd::Zero(2, 2), Eigen::VectorXd::Zero(2)});
+    sums.of[0] = {Eigen::Vector2d(1e4, 1e3).asDiagonal(), Eigen::Vector2d(-0.8, -40)};
+    sums.low = Eigen::Vector2d(-10, -10);
+    sums.high = Eigen::Vector2d(10, 10);
+    const Eigen::VectorXd logged = detail::step_without(sums, 0, false),
+                          behind_drive = detail::step_without(sums, 0, true);
+    CHECK(std::abs(logged[0]) == doctest::Approx(0.8).epsilon(0.01));
+    CHECK(std::abs(behind_drive[0]) < 1e-3);
+    CHECK(behind_drive[1] == doctest::Approx(logged[1]).epsilon(0.03));
+}

@@ -5,7 +5,7 @@
 
 #include <quadrant/diagnosis/diagnose.hpp>
 
-#include <quadrant/diagnosis/verdict/looked_axis.hpp>
+#include <quadrant/diagnosis/verdict/loop_witness.hpp>
 
 #include <algorithm>
 #include <array>

@@ -67,7 +67,6 @@ TEST_CASE("like machines: behind a tap they differ by what no moment of reading 
     REQUIRE(with_moments.size() == own.size() + 2);
     const auto fixed = cloud_of_like_machines(record, described, with_moments),
                fitted = cloud_of_fitted_machines(record, described, with_moments);
-    CHECK(fixed == cloud_of_fitted_machines(record, described, own));
     bool taps = false;
     for (std::size_t i = 0; i < fixed.size(); ++i) {
         if (!record.score.channels[i].of_tap) continue;

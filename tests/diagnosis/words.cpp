@@ -7,7 +7,7 @@
 TEST_CASE("words: calibration that takes nothing off a gap is not said to leave more than there was") {
     quadrant::diagnosis::axis_result a;
     a.gap.force_rms_N = 0.27;
-    a.gap.noise_floor_force_rms_N = 0.05;
+    a.gap.noise_floor_force_rms_N = a.gap_after.noise_floor_force_rms_N = 0.05;
     const auto said = [&](double after) {
         a.gap_after.force_rms_N = after;
         return quadrant_gap::detail::left_by_calibration(a);

@@ -53,6 +53,19 @@ TEST_CASE("velocity_loop: its filter passes 1 - 1/e after its time constant") {
     for (int k = 0; k < static_cast<int>(tau / h); ++k) loop(s, 0, 1);
     CHECK(s.filtered == doctest::Approx(1 - std::exp(-1)).epsilon(0.01));
 }
+TEST_CASE("velocity_loop: behind its filter a ramp is late by the time constant, however long the step is") {
+    const double corner = 100, tau = 1 / (2 * std::numbers::pi * corner), slope = 3;
+    for (const double h : {0.1 * tau, tau, 3 * tau}) {
+        const velocity_loop<> loop({.gain = 2, .filter_Hz = corner}, h);
+        velocity_loop<>::state s;
+        double force = 0, v = 0;
+        for (int k = 0; k < 400; ++k) {
+            v = slope * h * (k + 0.5); // in the middle of the step, where its mean is
+            force = loop(s, 0, v);
+        }
+        CHECK(force == doctest::Approx(-2 * (v - slope * tau)).epsilon(1e-9));
+    }
+}
 TEST_CASE("position_loop: asks for the velocity of its position error and of the set-points") {
     const position_loop<> loop({.gain = 20, .velocity_feedforward = 0.5, .velocity = {.gain = 10}}, 1e-3);
     position_loop<>::state s;

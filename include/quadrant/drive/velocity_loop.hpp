@@ -13,8 +13,8 @@ namespace quadrant::inline v0 {
 
 /// The velocity loop inside a drive: what turns an asked velocity into the force of the motor, on the drive's
 /// own clock.
-///   w' = 2 pi filter (v - w)                       velocity filter, exact over the step; none: w = v
-///   e  = asked - w
+///   w' = 2 pi filter (v - w)                       filter of the velocity, exact over the step; none: w = v
+///   e  = asked - w                                 mean over the step
 ///   I' = integral e,  |I| <= limit
 ///   F  = gain e + I,  |F| <= limit                 mean over the step: I as in its middle
 /// Source: docs/formats.md, `drive.kind` `velocity`; [Franklin1998] ch. 4 for P and PI.
@@ -26,7 +26,7 @@ namespace quadrant::inline v0 {
 /// limit > 0, infinite: none.
 /// NaN and infinities pass on. Runs in lanes.
 /// Throws "velocity_loop.<field> = ...: must ...".
-/// Cost: 4 multiplications. The same on the controller's clock, in typed quantities: `proportional_integral`.
+/// Cost: 5 multiplications. The same on the controller's clock, in typed quantities: `proportional_integral`.
 template <class Real = double> class velocity_loop {
 public:
     using number = parameter_real<Real>; ///< of parameters
@@ -49,12 +49,15 @@ public:
     velocity_loop(const parameters& p, Real h, already_checked) noexcept
         : gain_(p.gain), half_integral_(Real(0.5) * h * Real(p.integral)), limit_(p.limit) {
         using std::exp;
-        follow_ = Real(1) - exp(-(Real(2 * std::numbers::pi) * h * Real(p.filter_Hz)));
+        const Real turns = Real(2 * std::numbers::pi) * h * Real(p.filter_Hz);
+        follow_ = Real(1) - exp(-turns);
+        behind_ = follow_ / turns;
     }
 
     Real operator()(state& s, Real asked, Real velocity) const noexcept {
-        s.filtered = s.filtered + follow_ * (velocity - s.filtered);
-        const Real e = asked - s.filtered;
+        const Real ahead = velocity - s.filtered;
+        const Real e = asked - velocity + behind_ * ahead;
+        s.filtered = s.filtered + follow_ * ahead;
         const Real half = half_integral_ * e, in_the_middle = s.integral + half;
         s.integral = limited_to(in_the_middle + half, limit_);
         return limited_to(gain_ * e + in_the_middle, limit_);
@@ -74,7 +77,8 @@ private:
         return p;
     }
 
-    Real gain_, half_integral_, limit_, follow_{1};
+    Real gain_, half_integral_, limit_;
+    Real follow_{1}, behind_{0}; ///< of what it is ahead: taken over in a step, and missing on average
 };
 
 } // namespace quadrant::inline v0

@@ -45,12 +45,13 @@ inline constexpr effect drive_limit{
                   : [](plant_model& p) -> double& { return p.drive.force_limit; };
         const char* key = servo ? "drive.maximum_duty" : "drive.force_limit_N";
         if (s.record.observer.drive->tapped()) {
-            // What was measured was not cut off, but for its noise: without noise the limit is the largest
-            // value itself. That lies inside what is searched, or the limit would be found at an end of it. No
-            // duty is above the largest.
-            const double largest = servo ? 1 : 0.97;
-            return {{detail::limit_below(s, key, of, most / largest, 0.9 * largest,
-                                         {0.97 * largest, 0.99 * largest, largest})}};
+            // Without noise and lag the limit is the largest value that was measured: noise makes that larger,
+            // a lag behind the limit smaller. No duty is above the largest.
+            if (servo) return {{detail::limit_below(s, key, of, most, 0.9, {0.97, 0.99, 1})}};
+            const double largest = 0.9;
+            return {{detail::limit_below(
+                s, key, of, most / largest, 0.9 * largest,
+                {0.97 * largest, 0.99 * largest, largest, 1.03 * largest, 1.06 * largest})}};
         }
         if (servo) return {{detail::limit_below(s, key, of, most)}};
         const double taken = detail::most_taken(s) / most; // a law that winds up asks for a multiple of it

@@ -28,6 +28,7 @@ public:
     /// Whether it asks for nothing: at its end, or where it pauses.
     bool done() const { return stage_ == stage::done || paused_; }
     fit_result& result() { return best_; }
+    int iterations() const { return iterations_; } ///< at most
     /// Pauses behind this many iterations, where others are behind it or before it. It keeps no slopes there.
     void pause_after(int iterations) {
         pause_ = iterations;

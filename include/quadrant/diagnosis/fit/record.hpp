@@ -36,6 +36,8 @@ struct axis_record {
     predictor observer;
     scoring score{};
 
+    /// Whether the residual force says something in a row.
+    bool counts(std::size_t row) const { return left_out.empty() || !left_out[row]; }
     /// Whether the force is what a drive's replay makes of the logged motion. Its gains have tolerances in one
     /// ratio,
     /// which a fit bends together to what a missing effect does: such a record is searched from the described

@@ -78,7 +78,7 @@ QUADRANT_DIAGNOSIS_DECL std::shared_ptr<const led_motion> motion_to_lead(const a
     out->force_constant = described.force_constant;
     const double surely = 3 * r.resolution / r.scale.response();
     for (std::size_t k = 0; k < r.velocity.size(); ++k)
-        out->counts.push_back(std::abs(r.velocity[k]) > surely && (r.left_out.empty() || !r.left_out[k]));
+        out->counts.push_back(std::abs(r.velocity[k]) > surely && r.counts(k));
     return out;
 }
 

@@ -5,22 +5,19 @@
 #include "../fit/neighbour.hpp"
 #include "../fit/turned_beam.hpp"
 #include "../fit/with_drives.hpp"
-#include "../how_far/how_far.hpp"
 #include "../log/thinned.hpp"
 #include "../where/columns_in_time.hpp"
 #include "../where/places.hpp"
 #include "../which/between_rows.hpp"
 #include "../which/looks.hpp"
 #include "diagnose_axis.hpp"
+#include "loop_witness.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <fmt/format.h>
-#include <limits>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -133,47 +130,6 @@ inline void ready_axis::thin(double band, const rules& r, std::vector<std::strin
     period *= static_cast<double>(n);
 }
 
-/// A name with which the simulated loop leaves the log, among the names of these errors of the loop: of the
-/// calibrated machine, then with one name more each. A later name may bring the loop back to its log.
-struct loop_accusation {
-    std::size_t which = 0;
-    double times = 0; ///< as far from the log as without it: position times command
-};
-inline std::optional<loop_accusation> accused_by_loop(std::span<const double> errors, double least) {
-    std::optional<loop_accusation> out;
-    for (std::size_t i = 1; i < errors.size(); ++i)
-        if (const double times = std::min(errors[i], errors.back()) / errors[i - 1]; times > least) {
-            least = times;
-            out = {i - 1, times};
-        }
-    return out;
-}
-
-/// What the simulated loop says of the names. A motor that hardly answers its command predicts the readings of
-/// an axis that other forces hold, and hides their names.
-struct loop_witness {
-    const effect* against = nullptr;
-    std::size_t which = 0; ///< of the names
-    bool surely = false;   ///< a hundred times as far from the log as without it
-    /// Of the loop with all names; infinite where it cannot be simulated.
-    double error = std::numeric_limits<double>::infinity();
-
-    explicit loop_witness(const axis_case& c) {
-        if (!c.axis.controller && !c.axis.drive.closes()) return; // no loop is described
-        std::vector<double> errors = how_far(c).loop_errors();
-        if (errors.empty()) return;
-        for (double& e : errors)
-            if (std::isnan(e)) e = std::numeric_limits<double>::infinity();
-        error = errors.back();
-        constexpr double further = 1.2, far = 100;
-        const auto accused = accused_by_loop(errors, c.at_floor() || c.within_its_laws() ? far : further);
-        if (!accused) return;
-        which = accused->which;
-        against = c.best().effects[which];
-        surely = accused->times > far;
-    }
-};
-
 /// An axis that was looked at, and what it was looked at with.
 struct looked_axis {
     std::unique_ptr<ready_axis> ready;
@@ -186,7 +142,7 @@ struct looked_axis {
     }
     void look(const read_logs& logs, const progress& tell, const rules& limits) {
         ready_axis& of = *ready;
-        const auto look = [&](std::vector<std::string>& said) {
+        const auto look = [&](std::vector<std::string>& said, const axis_case* before) {
             return look_at({.axis = of.rigid,
                             .log = of.both ? *of.both : of.log,
                             .apart = of.log,
@@ -196,10 +152,11 @@ struct looked_axis {
                             .period = of.period,
                             .excluded = of.excluded,
                             .limits = limits,
-                            .stage = of.stage},
+                            .stage = of.stage,
+                            .found = before},
                            logs.log.file, tell, said);
         };
-        found = look(notes);
+        found = look(notes, nullptr);
         constexpr int most = 2; // names that are taken away
         if (found->best().effects.empty()) return;
         loop_witness loop(*found);
@@ -209,7 +166,9 @@ struct looked_axis {
             tell(fmt::format("axis {}: again, without {}", of.axis.name, label_of(*loop.against)));
             of.excluded.by_readings.emplace_back(loop.against->name);
             std::vector<std::string> said;
-            auto other = look(said);
+            const axis_record& r = found->record;
+            const bool same_record = !r.observer.led && !r.closed() && !r.tap && !found->exchanged;
+            auto other = look(said, same_record ? found.get() : nullptr);
             const auto left = [](const axis_case& c) { return c.models.held_out_force(c.best()); };
             const loop_witness of_other(*other);
             const bool stands = of_other.error < loop.error && left(*other) < left(*found);

@@ -22,6 +22,8 @@ namespace quadrant::inline v0::diagnosis {
 /// reads it.
 class axis_case {
 public:
+    /// `before`: what was found of this record with fewer names excluded, or before models are led along its
+    /// motion.
     axis_case(const axis_description& a, const axis_log& l, const axis_log* other, double period,
               const exclusions& excluded, const rules& r, const progress& tell, held_by how = held_by::readings,
               const axis_case* before = nullptr, std::optional<tap_reading> tap = {});
@@ -43,7 +45,8 @@ private:
     std::vector<plant_model> known_;      ///< near what the machine does, of that search
     /// How far apart machines inside the owner's tolerances are on the hold-out log's motion.
     const std::vector<double>& cloud_of_second() const;
-    mutable std::vector<double> cloud_of_second_{}; ///< found when it is asked for
+    mutable std::vector<double> cloud_of_second_{};               ///< found when it is asked for
+    mutable std::shared_ptr<const led_motion> measured_motion_{}; ///< likewise
     bool within_its_laws(const axis_record& r, const std::vector<plant_model>& plants) const;
     bool within_its_laws_on_both(std::vector<plant_model> plants) const;
     /// This model, the calibrated machine, and this model with stronger friction.
@@ -107,6 +110,8 @@ public:
     double left_along_motion() const;
     /// What the forces of each of these plants leave there, above the noise of a measured command [N].
     std::vector<double> left_along_motion(std::span<const plant_model> some) const;
+    /// The same of one model.
+    double left_along_motion(const candidate& m) const;
     /// Share of what `from` leaves above the floor that `to` takes off, in energy on held-out motion.
     double takes_off(const candidate& to, const candidate& from) const;
     /// How a model predicts the hold-out log, which nothing was fitted to.

@@ -26,6 +26,7 @@ QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const ax
                              axis, how, known_);
     count_unnamed = coarse() && excluded.contains("encoder_quantization");
     models.begins(tell.part(detail::share_of_record(how), 1));
+    if (before && how == held_by::readings) models.take_over(before->models);
     follow(models.run());
     leave_out_what_the_holdout_denies();
     if (!tested_apart() || !record.replayed() || best().effects.empty()) return;
@@ -159,23 +160,28 @@ QUADRANT_DIAGNOSIS_DECL bool axis_case::claims_suffice() const {
 QUADRANT_DIAGNOSIS_DECL std::vector<double>
 axis_case::left_along_motion(std::span<const plant_model> some) const {
     std::vector<double> out;
-    const auto by = motion_to_lead(record, plant_model(axis, record.scale.give()));
+    if (!measured_motion_) measured_motion_ = motion_to_lead(record, plant_model(axis, record.scale.give()));
+    const led_motion& by = *measured_motion_;
     // Every model leaves the noise of a measured command, which is known to a tenth.
     const double of_command = record.command_noise_below(record.observer.corner_Hz),
-                 noise_energy = square(of_command) * by->share_that_counts();
+                 noise_energy = square(of_command) * by.share_that_counts();
     for (; !some.empty(); some = some.subspan(std::min(some.size(), predictor::abreast))) {
         const auto plants = some.first(std::min(some.size(), predictor::abreast));
         std::array<std::vector<double>, predictor::abreast> left;
-        record.observer.forces_beside(*by, plants, record.command, std::span(left).first(plants.size()));
+        record.observer.forces_beside(by, plants, record.command, std::span(left).first(plants.size()));
         for (std::size_t i = 0; i < plants.size(); ++i)
             out.push_back(std::sqrt(std::max(square(rms(left[i])) - noise_energy, 0.2 * noise_energy)));
     }
     return out;
 }
 
+QUADRANT_DIAGNOSIS_DECL double axis_case::left_along_motion(const candidate& m) const {
+    if (!*m.along_motion) *m.along_motion = left_along_motion(std::span(&m.fit.plant, 1)).front();
+    return **m.along_motion;
+}
+
 QUADRANT_DIAGNOSIS_DECL double axis_case::left_along_motion() const {
-    const auto left = left_along_motion(std::array{best().fit.plant, path.front().fit.plant});
-    return left[0] / left[1];
+    return left_along_motion(best()) / left_along_motion(path.front());
 }
 
 QUADRANT_DIAGNOSIS_DECL double axis_case::takes_off(const candidate& to, const candidate& from) const {

@@ -29,6 +29,8 @@ struct candidate {
     Eigen::MatrixXd unknown{};
     /// rms of the residual force on held-out motion [N], once it was asked for; copies share it.
     std::shared_ptr<std::optional<double>> held_out_force = std::make_shared<std::optional<double>>();
+    /// What its forces leave along the measured motion [N], likewise.
+    std::shared_ptr<std::optional<double>> along_motion = std::make_shared<std::optional<double>>();
     /// White noise of the position as it sees it [m], likewise.
     std::shared_ptr<std::optional<double>> noise = std::make_shared<std::optional<double>>();
     /// How it predicts the hold-out log, likewise.

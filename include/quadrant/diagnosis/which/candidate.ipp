@@ -67,7 +67,10 @@ inline void add_what_is_known(fold_sums& sums, const fit_result& fit) {
 }
 
 QUADRANT_DIAGNOSIS_DECL Eigen::VectorXd step_without(const fold_sums& sums, std::size_t fold, bool replayed) {
-    Eigen::MatrixXd a = sums.all.a - sums.of[fold].a;
+    // Behind a drive's replay what this fold alone shows stays where it is: the others do not know it, and
+    // predict nothing by it. Where a command was logged, forces without a name fill single folds.
+    const double alone = replayed ? 0.1 : 0;
+    Eigen::MatrixXd a = sums.all.a - (1 - alone) * sums.of[fold].a;
     a.diagonal() *= 1 + 1e-9;
     Eigen::VectorXd g = -sums.of[fold].g;
     if (replayed) g += sums.all.g; // elsewhere as at the optimum, where nothing presses against a bound
@@ -124,6 +127,7 @@ QUADRANT_DIAGNOSIS_DECL void judge(const axis_record& record, candidate& c) {
     if (!std::isfinite(c.fit.objective)) return;
     cross_validate(c, record.score, record.replayed(), record.closed());
     c.held_out_force = std::make_shared<std::optional<double>>();
+    c.along_motion = std::make_shared<std::optional<double>>();
     c.noise = std::make_shared<std::optional<double>>();
     c.holdout = std::make_shared<std::optional<candidate::on_holdout>>();
     if (const auto& innovation = c.fit.innovation.rows; !innovation.empty())

@@ -3,6 +3,13 @@
 
 namespace quadrant::inline v0::diagnosis::detail {
 
+/// The names of the best model but for one.
+inline std::vector<const effect*> others_of(const axis_case& c, const effect* own) {
+    std::vector<const effect*> out = c.best().effects;
+    std::erase(out, own);
+    return out;
+}
+
 QUADRANT_DIAGNOSIS_DECL double left_beside(const axis_case& c, std::size_t which) {
     return c.excused ? 0 : between(c.models.held_out_force(c.best()), c.floor_force()) / explained_by(c, which);
 }
@@ -34,7 +41,7 @@ QUADRANT_DIAGNOSIS_DECL double beside_path(const axis_record& r, const plant_mod
     on_the_model.run(plant, e);
     double sum = 0, rows = 0;
     for (std::size_t k = r.score.skip; k < r.position.size(); ++k)
-        if (r.left_out.empty() || !r.left_out[k]) {
+        if (r.counts(k)) {
             sum += square(e[k]);
             ++rows;
         }
@@ -42,8 +49,7 @@ QUADRANT_DIAGNOSIS_DECL double beside_path(const axis_record& r, const plant_mod
 }
 
 QUADRANT_DIAGNOSIS_DECL double left_of_paths(const axis_case& c, std::size_t which) {
-    std::vector<const effect*> others = c.best().effects;
-    std::erase(others, c.best().effects[which]);
+    const auto others = others_of(c, c.best().effects[which]);
     const plant_model with = c.best().fit.plant,
                       without = others.empty() ? c.models.plant_without(c.best(), *c.best().effects[which])
                                                : c.models.with(others).fit.plant;
@@ -56,8 +62,7 @@ QUADRANT_DIAGNOSIS_DECL double left_of_paths(const axis_case& c, std::size_t whi
 }
 
 QUADRANT_DIAGNOSIS_DECL double left_behind_drive(const axis_case& c, std::size_t which) {
-    std::vector<const effect*> others = c.best().effects;
-    std::erase(others, c.best().effects[which]);
+    const auto others = others_of(c, c.best().effects[which]);
     const auto& channels = c.record.score.channels;
     double out = std::numeric_limits<double>::infinity();
     if (std::none_of(channels.begin(), channels.end(), [](const channel& x) { return x.of_tap; })) return out;
@@ -89,8 +94,7 @@ QUADRANT_DIAGNOSIS_DECL std::size_t names_as_likely(const axis_case& c, const ef
 /// others with the numbers that they have only predicts what it corrects.
 inline candidate without_standing(const axis_case& c, std::size_t which) {
     const effect* own = c.best().effects[which];
-    std::vector<const effect*> others = c.best().effects;
-    std::erase(others, own);
+    const auto others = others_of(c, own);
     candidate again = c.models.with(others);
     if (others.empty() || c.record.observer.led || c.axis.drive.closes() || !shows_along_motion(c.best()))
         return again;
@@ -133,8 +137,7 @@ QUADRANT_DIAGNOSIS_DECL double against_others(const axis_case& c, const std::vec
     std::vector<const effect*> same;
     for (const rival& r : names)
         if (r.same || &r == &names.front()) same.push_back(r.name);
-    std::vector<const effect*> others = c.best().effects;
-    std::erase(others, names.front().name);
+    const auto others = others_of(c, names.front().name);
     std::optional<taken_gap> gap;
     if (!c.settled && !c.record.closed()) gap.emplace(c, c.models.with(others));
     const double own = c.worth(c.best());
@@ -156,8 +159,7 @@ QUADRANT_DIAGNOSIS_DECL double against_others(const axis_case& c, const std::vec
 QUADRANT_DIAGNOSIS_DECL excluded_rival excluded_instead_of(const axis_case& c, std::size_t which) {
     constexpr double owner_errs = 0.05;
     const effect* own = c.best().effects[which];
-    std::vector<const effect*> others = c.best().effects;
-    std::erase(others, own);
+    const auto others = others_of(c, own);
     std::vector<candidate> models = c.models.with_excluded(c.path.front());
     if (!others.empty()) {
         const auto& beside = c.models.with_excluded(c.models.with(others));

@@ -35,9 +35,7 @@ struct tested_regression {
     tested_regression(const axis_record& r, const Eigen::MatrixXd& columns, const std::vector<double>& torque) {
         const Eigen::Index n = columns.cols();
         std::vector<regression_part> sums(folds, {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)});
-        const auto counts = [&](std::size_t k) {
-            return k >= r.score.skip && (r.left_out.empty() || !r.left_out[k]);
-        };
+        const auto counts = [&](std::size_t k) { return k >= r.score.skip && r.counts(k); };
         const auto row = [&](std::size_t k) { return columns.row(static_cast<Eigen::Index>(k)); };
         regression_part all = sums.front();
         for (std::size_t k = 0; k < torque.size(); ++k) {

@@ -22,6 +22,8 @@ struct looked_at {
     const exclusions& excluded;
     const rules& limits;
     const stages& stage;
+    /// What was found of these logs, corrected by their readings, with fewer names excluded; null: nothing.
+    const axis_case* found = nullptr;
 };
 
 /// The models of an axis: fitted to the readings, then once more along the measured motion or to the hold-out

@@ -174,7 +174,7 @@ look_at(const looked_at& of, const std::string& file, const progress& tell, std:
         found = std::move(led);
         return again.why;
     };
-    auto found = look(of.soft ? held_by::loop : held_by::readings, nullptr, false);
+    auto found = look(of.soft ? held_by::loop : held_by::readings, of.found, false);
     need_blocks(*found, file);
     if (of.both)
         notes.push_back(

@@ -13,7 +13,8 @@ QUADRANT_DIAGNOSIS_DECL void run_the_promising(const fitter& fit, std::span<fit_
     const auto of_each_model = [&](const auto& use) {
         for (std::span<fit_course> rest = courses; const std::size_t n : starts_of) {
             const auto starts = rest.first(n);
-            if (n > few) use(starts);
+            const auto takes_longer = [&](const fit_course& c) { return c.iterations() > steps; };
+            if (n > few && std::none_of(starts.begin(), starts.end(), takes_longer)) use(starts);
             rest = rest.subspan(n);
         }
     };

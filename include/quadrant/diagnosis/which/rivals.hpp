@@ -77,8 +77,7 @@ public:
         if (c.tested_apart()) there_ = of_holdout(without, c.best());
         if (!c.record.observer.led && !c.axis.drive.closes() && shows_along_motion(c.best()) &&
             shows_along_motion(without)) {
-            const auto left = c.left_along_motion(std::array{without.fit.plant, c.best().fit.plant});
-            along_ = {square(left[0]), square(left[1])};
+            along_ = {square(c.left_along_motion(without)), square(c.left_along_motion(c.best()))};
         }
     }
     /// Whether a model takes at least half of it off, in energy. Asked only of a log on which it is most of
@@ -86,8 +85,7 @@ public:
     bool is_taken_by(const candidate& m) const {
         return here_.is_taken(case_.models.held_out_force(m)) &&
                (!there_.asked() || there_.is_taken(case_.second_log(m).force)) &&
-               (!along_.asked() || !shows_along_motion(m) ||
-                along_.is_taken(case_.left_along_motion(std::span(&m.fit.plant, 1)).front()));
+               (!along_.asked() || !shows_along_motion(m) || along_.is_taken(case_.left_along_motion(m)));
     }
 
 private:

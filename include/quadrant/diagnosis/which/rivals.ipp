@@ -66,8 +66,7 @@ QUADRANT_DIAGNOSIS_DECL bool ignores_the_command(const axis_case& c, const candi
         c.record.observer.led || !shows_along_motion(m) || !shows_along_motion(c.best()))
         return false;
     if (!answers_less(m, c.path.front(), c.limits.least_shrink)) return false;
-    const auto left = c.left_along_motion(std::array{m.fit.plant, c.best().fit.plant});
-    return left[0] > (1 + c.limits.least_shrink) * left[1];
+    return c.left_along_motion(m) > (1 + c.limits.least_shrink) * c.left_along_motion(c.best());
 }
 
 /// Of a group stay the likeliest names that hold 95 % of its weight, the first, and what is one model with it.
@@ -148,7 +147,7 @@ public:
         if (c.tested_apart()) there_ = square(c.second_log(c.best()).force);
         unexplained_there_ = there_ - square(c.floor_force());
         if (!c.record.observer.led && !c.record.replayed() && shows_along_motion(c.best()))
-            along_ = along_motion(c.best());
+            along_ = c.left_along_motion(c.best());
         if (!(along_ > c.limits.near_floor * floor)) along_ = 0;
     }
 
@@ -197,15 +196,12 @@ public:
 
 private:
     bool by_force(const rival& r) const { return !case_.record.closed() && !r.unlisted(); }
-    double along_motion(const candidate& m) const {
-        return case_.left_along_motion(std::span(&m.fit.plant, 1)).front();
-    }
     /// Whether a name leaves less than half, in energy, of the forces along the measured motion that the cause
     /// itself leaves open: predictions that are corrected by the readings, or that stand still where the axis
     /// is slow, do not show it.
     bool follows_the_motion(const rival& r) const {
         return along_ > 0 && by_force(r) && shows_along_motion(r.model) &&
-               2 * square(along_motion(r.model)) < square(along_);
+               2 * square(case_.left_along_motion(r.model)) < square(along_);
     }
     double excess(const rival& r) const {
         return std::max(0.0, square(case_.models.held_out_force_of_described_mass(r.model)) - energy_);

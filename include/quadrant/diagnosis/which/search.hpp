@@ -55,7 +55,13 @@ public:
     }
 
     /// The machine with the one effect that comes nearest to the record, or as calibrated.
-    plant_model nearest() const;
+    plant_model nearest() const {
+        const candidate* best = &calibrated_;
+        const auto single = with_each(calibrated_);
+        for (const candidate& c : single)
+            if (c.total > best->total) best = &c;
+        return best->fit.plant;
+    }
 
 private:
     /// The score of a model, less what each of its names must bring.
@@ -73,7 +79,11 @@ private:
     bool explains_the_rest(const candidate& step, const candidate& best) const;
     /// The suspects whose number is beyond its tolerance: where nothing that would matter is left, such a
     /// number alone may still be missing.
-    std::vector<const effect*> beyond_tolerance(const candidate& c) const;
+    std::vector<const effect*> beyond_tolerance(const candidate& c) const {
+        std::vector<const effect*> out = suspects();
+        std::erase_if(out, [&](const effect* e) { return has(c, e) || !is_beyond_tolerance(c, *e); });
+        return out;
+    }
     void fit_to_the_end(candidate& best) const;
     /// Two at once of the best single effects: what two do to the force may cancel, and then neither pays
     /// alone. `single`: sorted.
@@ -82,6 +92,12 @@ private:
     /// of `best` stopped short (a play or a contact makes its score rough): it goes on from there. True: it got
     /// better.
     bool calibrate_again(candidate& best, const std::vector<candidate>& next) const;
+    /// The same from the described numbers, where causes leave structure: the numbers at which the last name
+    /// began had bent to what it explains. True: it got better.
+    bool begin_as_described(candidate& best) const;
+    /// Fits `best` again from the numbers of this plant. True: it got better, and what was tried beside it is
+    /// forgotten where it had gained.
+    bool fits_better_from(const plant_model& begun, candidate& best) const;
     /// Where `step`, which has one effect more, only led the other numbers to a better place, the effect takes
     /// nothing off: `best` goes on from those numbers without it, and what was tried beside it and may have
     /// stopped short of the step is forgotten. True: it got better.

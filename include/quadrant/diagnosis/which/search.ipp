@@ -41,6 +41,10 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::run() const {
             best = chosen;
             continue;
         }
+        if (!best.effects.empty() && !over() && begin_as_described(best)) {
+            beam.assign(1, best);
+            continue;
+        }
         if (!best.effects.empty() || immaterial(best) || over()) break;
         next = in_pairs(next);
         step = paying(next, best);
@@ -105,20 +109,6 @@ QUADRANT_DIAGNOSIS_DECL candidate search::by_the_scale(const candidate& best) co
     return worth(way) > worth(best) + rules_.margin ? way : best;
 }
 
-QUADRANT_DIAGNOSIS_DECL std::vector<const effect*> search::beyond_tolerance(const candidate& c) const {
-    std::vector<const effect*> out = suspects();
-    std::erase_if(out, [&](const effect* e) { return has(c, e) || !is_beyond_tolerance(c, *e); });
-    return out;
-}
-
-QUADRANT_DIAGNOSIS_DECL plant_model search::nearest() const {
-    const candidate* best = &calibrated_;
-    const auto single = with_each(calibrated_);
-    for (const candidate& c : single)
-        if (c.total > best->total) best = &c;
-    return best->fit.plant;
-}
-
 QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::path_to(const candidate& best) const {
     std::vector<candidate> path{best};
     while (!path.back().effects.empty()) {
@@ -156,8 +146,20 @@ QUADRANT_DIAGNOSIS_DECL bool search::calibrate_again(candidate& best,
             is_calibrated_beside(c))
             better = &c;
     if (!better) return false;
+    return fits_better_from(better->fit.plant, best);
+}
+
+QUADRANT_DIAGNOSIS_DECL bool search::begin_as_described(candidate& best) const {
+    if (structure(best, noise(best)) < rules_.structure) return false;
+    plant_model begun = best.fit.plant, described = given_.fit.plant;
+    for (const parameter& p : best.fit.parameters)
+        if (is_calibrated(p)) p.of(begun) = p.of(described);
+    return fits_better_from(begun, best);
+}
+
+QUADRANT_DIAGNOSIS_DECL bool search::fits_better_from(const plant_model& begun, candidate& best) const {
     candidate again = best;
-    begin_at(again, better->fit.plant);
+    begin_at(again, begun);
     finish(record_, again);
     if (!(again.total > best.total + rules_.margin)) return false;
     // What gained beside it had gone on from where the fit had stopped.

@@ -41,6 +41,9 @@ public:
     std::vector<candidate> exchanged(const candidate& whole, const effect* own,
                                      const std::vector<const effect*>& added) const;
 
+    /// What another search of the same record tried, but for models with names that are excluded here.
+    void take_over(const tried_models& other);
+
     std::vector<const effect*> suspects() const;
 
     /// `from` with each of the effects that the owner excludes, and would be suspects otherwise: they are never

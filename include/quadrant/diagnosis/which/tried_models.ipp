@@ -182,6 +182,13 @@ tried_models::exchanged(const candidate& whole, const effect* own,
     return out;
 }
 
+QUADRANT_DIAGNOSIS_DECL void tried_models::take_over(const tried_models& other) {
+    for (const candidate& c : other.tried_)
+        if (std::none_of(c.effects.begin(), c.effects.end(),
+                         [this](const effect* e) { return excluded_.contains(e->name); }))
+            tried_.push_back(c);
+}
+
 QUADRANT_DIAGNOSIS_DECL bool tried_models::possible(const effect& e) const {
     // What is logged behind the amplifier has passed everything that acts on the command.
     if (axis_.actuator.command_is == command_origin::measured && e.joins == joint::command) return false;

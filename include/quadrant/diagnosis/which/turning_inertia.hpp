@@ -51,9 +51,7 @@ inline turning_inertia fitted_inertia(const axis_case& c, const Eigen::MatrixXd&
                                       const std::vector<double>& residual) {
     const axis_record& r = c.record;
     std::vector<regression_part> sums(folds, {Eigen::MatrixXd::Zero(2, 2), Eigen::VectorXd::Zero(2)});
-    const auto counts = [&](std::size_t k) {
-        return k >= r.score.skip && (r.left_out.empty() || !r.left_out[k]);
-    };
+    const auto counts = [&](std::size_t k) { return k >= r.score.skip && r.counts(k); };
     for (std::size_t k = 0; k < residual.size(); ++k) {
         if (!counts(k)) continue;
         const Eigen::VectorXd row = columns.row(static_cast<Eigen::Index>(k)).transpose();
