@@ -13,7 +13,7 @@ namespace quadrant::inline v0 {
 
 /// The velocity loop inside a drive: what turns an asked velocity into the force of the motor, on the drive's
 /// own clock.
-///   w' = 2 pi filter (v - w)                       filter of the velocity, exact over the step; none: w = v
+///   w' = 2 pi filter (v - w)                       velocity filter, exact over the step; none: w = v
 ///   e  = asked - w                                 mean over the step
 ///   I' = integral e,  |I| <= limit
 ///   F  = gain e + I,  |F| <= limit                 mean over the step: I as in its middle
