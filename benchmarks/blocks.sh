@@ -196,7 +196,8 @@ Programs that wanted to run in the minute before: $before; priority of the sessi
 Other programs and a virtual machine's neighbours make a loop slower, so compare rows of one table, and take the instructions where a few percent matter.
 Written by \`sh benchmarks/blocks.sh >docs/benchmarks.md\`; the parameters are those of \`tests/conformance/blocks.hpp\`.
 Input is noise of the amplitude that the list gives. The call and the summing loop are included: \`through\` shows what
-passing a number costs; \`standing\` is the same block with an input that rests. Library functions (\`sin\`, \`exp\`) are counted as what they execute.
+passing a number costs; \`standing\` is the same block with an input that rests. Library functions (\`sin\`, \`exp\`) are counted
+as what they execute.
 
 ## Blocks
 

@@ -26,7 +26,7 @@ namespace quadrant::inline v0 {
 /// limit > 0, infinite: none.
 /// NaN and infinities pass on. Runs in lanes.
 /// Throws "velocity_loop.<field> = ...: must ...".
-/// Cost: 5 multiplications. The same on the controller's clock, in typed quantities: `proportional_integral`.
+/// Cost: 4 multiplications. The same on the controller's clock, in typed quantities: `proportional_integral`.
 template <class Real = double> class velocity_loop {
 public:
     using number = parameter_real<Real>; ///< of parameters

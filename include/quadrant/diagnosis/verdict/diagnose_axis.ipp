@@ -100,7 +100,7 @@ inline void suspect_by_chance(const how_far& shrinks, axis_case& c, std::vector<
         std::size_t n = c.claims; // up to the last one that other motions can hold up
         while (n > 0 && once(claims[n - 1])) --n;
         if (n == 0) return;
-        const bool together = n < c.claims || std::any_of(claims.begin(), claims.end(), once) ||
+        const bool together = std::any_of(claims.begin(), claims.end(), once) ||
                               shrinks.surely_shrinks(c.models.given(), c.applied());
         if (together && (c.claims == 1 || shrinks.surely_shrinks(c.path[n - 1], c.path[n]))) return;
         to_suspects(together ? std::span(&causes[n - 1], 1) : std::span(causes));
