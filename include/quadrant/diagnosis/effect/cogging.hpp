@@ -19,6 +19,7 @@ inline constexpr effect cogging{
     .box = "mechanics",
     .joins = joint::force,
     .exciting_motion = "slow strokes in both directions over several periods",
+    .ends_inside = {"cogging_period_m"}, // a slope, a bend, or one bump along the travel has no period
     .shows = "periodic in position, up to half the travel",
     .keys = {machine_key{.name = "cogging_period_m",
                          .rule = detail::rule::positive,

@@ -18,6 +18,7 @@ inline constexpr effect force_ripple{
     .joins = joint::motor_gain,
     .exciting_motion =
         "strokes over several periods with strong accelerations, or against a load, and the same slowly",
+    .ends_inside = {"ripple_period_m"}, // a slope along the travel has no period
     .shows = "periodic in position, grows with the command",
     .keys = {machine_key{.name = "ripple",
                          .rule = detail::rule::asymmetry,

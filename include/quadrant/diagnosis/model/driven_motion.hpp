@@ -239,12 +239,8 @@ struct driven_motion {
         return memory.of(d, steps, set_points_of(d), period, begins);
     }
 
-    /// What the law of this drive gives in each part of each row: duty of a position servo, else force [N].
-    std::vector<double> in_parts(const drive_model& d) const {
-        return d.kind == drive_kind::position_servo ? duty(d) : force(d);
-    }
-    /// The same in each row, on average.
-    std::vector<double> given(const drive_model& d) const { return row_means(in_parts(d)); }
+    /// What the law of this drive gives in each row, on average: duty of a position servo, else force [N].
+    std::vector<double> given(const drive_model& d) const { return row_means(in_parts(d).given); }
 
     /// What the actuator gets of what the drive gives: volts of a duty, else the command that makes the force.
     std::vector<double> to_actuator(const drive_model& d, std::vector<double> out) const {
@@ -262,7 +258,7 @@ struct driven_motion {
     /// set-points in steps was read once a row only, and its mean over the row is not that reading.
     replay run(const drive_model& d) const {
         const auto fine = in_parts(d);
-        replay out{row_means(fine), {}};
+        replay out{row_means(fine.given), {}};
         if (tapped()) {
             out.beside = beside(d, seen_by_tap(d, fine));
             const auto last = static_cast<double>(measured.size() - 1);
@@ -302,6 +298,14 @@ struct driven_motion {
     }
 
 private:
+    /// What a drive's law gives in each part of each row; of a force that has a limit also what the law asks
+    /// before that, and by how much its integral was lifted.
+    struct law_in_parts {
+        std::vector<double> given, asked{}, lifted{};
+    };
+    law_in_parts in_parts(const drive_model& d) const {
+        return d.kind == drive_kind::position_servo ? law_in_parts{duty(d)} : force(d);
+    }
     /// Share of a part of a row in which this drive is on.
     double share_on(const drive_model& d, std::size_t part) const {
         if (!(d.off_until > d.off_from)) return 1;
@@ -310,7 +314,7 @@ private:
         return 1 - std::clamp(silent / length, 0.0, 1.0);
     }
     /// What the law gives at the moments of the tap: with the set-point that the drive had then.
-    std::vector<double> seen_by_tap(drive_model d, const std::vector<double>& fine) const {
+    law_in_parts seen_by_tap(drive_model d, const law_in_parts& fine) const {
         if (d.read.tap_lateness == 0) return fine;
         d.delay -= d.read.tap_lateness;
         return in_parts(d);
@@ -325,21 +329,26 @@ private:
         return out;
     }
     /// At the moments of the tap's readings, which follow those of the position.
-    std::vector<double> beside(const drive_model& d, const std::vector<double>& fine) const {
-        const auto last = static_cast<double>(fine.size() - 1);
-        const auto at = [&](double part) { return between(fine, std::clamp(part, 0.0, last)); };
+    std::vector<double> beside(const drive_model& d, const law_in_parts& fine) const {
+        const auto last = static_cast<double>(fine.given.size() - 1);
+        const auto at = [&](const std::vector<double>& x, double part) {
+            return between(x, std::clamp(part, 0.0, last));
+        };
         const auto steps = steps_at_tap(d);
         std::vector<double> out(measured.size(), 0.0);
         for (std::size_t k = 0; k < out.size(); ++k) {
             if (is_off(k)) continue;
             const double reading = (static_cast<double>(k) + d.read.age / period) * parts - 0.5;
+            const double step = steps.empty() ? 0 : steps[k];
             double law = 0;
             if (d.read.tap == tap_reading::row_mean)
                 for (std::size_t i = 0; i < parts; ++i)
-                    law += at(reading + 0.5 + static_cast<double>(i)) / parts;
-            else
-                law = at(reading);
-            if (!steps.empty()) law = std::clamp(law + steps[k], -d.force_limit, d.force_limit);
+                    law += at(fine.given, reading + 0.5 + static_cast<double>(i)) / parts;
+            else if (fine.asked.empty())
+                law = at(fine.given, reading) + step;
+            else // a limit cuts off what is asked at this moment, not a mean that it has cut off before
+                law = std::clamp(at(fine.asked, reading) + step, -d.force_limit, d.force_limit) -
+                      at(fine.lifted, reading);
             out[k] = measured[k] - law;
         }
         return out;
@@ -409,12 +418,31 @@ private:
         });
         return out;
     }
-    std::vector<double> force(const drive_model& d) const {
-        std::vector<double> out(position.size() * parts, 0.0);
-        const auto numbers = d.position_loop_numbers();
-        const position_loop<> law(numbers, period / parts, already_checked());
-        const velocity_loop<> inner(numbers.velocity, period / parts, already_checked());
-        const double scale = in_volts ? d.velocity_per_V : 1;
+    /// The loops of a drive that takes velocities, or positions.
+    class loops {
+    public:
+        loops(const position_loop<>::parameters& p, drive_kind kind, double h)
+            : of_position_(p, h, already_checked()), of_velocity_(p.velocity, h, already_checked()),
+              takes_velocity_(kind == drive_kind::velocity) {}
+        double operator()(velocity_loop<>::state& s, double asked, double slope, double x, double v) const {
+            return takes_velocity_ ? of_velocity_(s, asked, v) : of_position_(s, asked, slope, x, v);
+        }
+
+    private:
+        position_loop<> of_position_;
+        velocity_loop<> of_velocity_;
+        bool takes_velocity_;
+    };
+    law_in_parts force(const drive_model& d) const {
+        const bool has_limit = std::isfinite(d.force_limit);
+        const std::size_t n = position.size() * parts, n_of_limit = has_limit && tapped() ? n : 0;
+        law_in_parts out{std::vector<double>(n, 0.0), std::vector<double>(n_of_limit, 0.0),
+                         std::vector<double>(n_of_limit, 0.0)};
+        auto numbers = d.position_loop_numbers();
+        const loops law(numbers, d.kind, period / parts);
+        numbers.velocity.limit = drive_model::none;
+        const loops asks(numbers, d.kind, period / parts);
+        const double scale = in_volts && d.kind == drive_kind::velocity ? d.velocity_per_V : 1;
         auto s = velocity_loop<>::state::at(velocity[0], d.start_force);
         const double rate = needed.empty() ? 0 : level_rate(d) * period / parts, follow = 1 - std::exp(-rate),
                      smooth = 1 - std::exp(-5 * rate);
@@ -426,8 +454,13 @@ private:
                 lifted = beside = 0;
                 return;
             }
-            const double f = d.kind == drive_kind::velocity ? inner(s, scale * r, v) : law(s, r, slope, x, v);
-            out[at] = on * (f - lifted);
+            if (n_of_limit > 0) {
+                auto before = s;
+                out.asked[at] = on * asks(before, scale * r, slope, x, v);
+                out.lifted[at] = on * lifted;
+            }
+            const double f = law(s, scale * r, slope, x, v);
+            out.given[at] = on * (f - lifted);
             if (follow > 0) {
                 beside += smooth * (needed[k] - f - beside);
                 const double kept = d.force_limit / 4,
