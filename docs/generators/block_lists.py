@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
-"""usage: block_lists.py [ROOT] [--check]: writes the two lists that follow from others.
+"""usage: block_lists.py [ROOT] [--check]: writes what follows from headers and lists.
 
 1. The includes of include/quadrant/quadrant.hpp: every header of the first table in docs/public_headers.md, but those that the
    page excepts.
 2. The list of blocks in docs/README.md: every page of docs/blocks, under the folder of its header.
+3. The type of each block with its template arguments, under the include on its page: as its header declares it.
 
 With --check it writes nothing and fails when one of them is stale. It fails, too, when a public header has a block without a page.
 """
@@ -45,6 +46,32 @@ rooms = ("filter", "control", "friction", "memory", "observer", "feedforward", "
 parts = {"friction/maxwell_slip_lanes.hpp", "friction/presliding.hpp", "memory/repetitive_in_step.hpp", "plant/axis_load.hpp"}
 
 
+def arguments_of(declared):
+    """The template arguments of a declaration as a user writes them: names, and what stands for one that is left out."""
+    out, depth, one = [], 0, ""
+    for c in declared + ",":
+        depth += (c in "<(") - (c in ">)")
+        if c == "," and depth == 0:
+            kind, _, default = one.partition("=")
+            name = kind.split()[-1] + ("..." if "..." in kind else "")
+            out.append(name + (" = " + default.replace("typename ", "").strip() if default else ""))
+            one = ""
+        else:
+            one += c
+    return ", ".join(out)
+
+
+def with_type(page):
+    """The text of a page with the type of its block, where that is a template."""
+    text = page.read_text()
+    header = re.search(r"^`#include <(quadrant/\w+/\w+\.hpp)>`$", text, re.M)
+    if not header:
+        return text
+    declared = re.search(rf"^template <([^;{{}}]*?)>\s+(?:requires[^;{{}}]*?\s)?(?:class|struct) {page.stem}\b", (root / "include" / header[1]).read_text(), re.M)
+    line = textwrap.fill(f"`{page.stem}<{arguments_of(' '.join(declared[1].split()))}>`", 112) + "\n\n" if declared else ""
+    return re.sub(rf"(?<=^{re.escape(header[0])}\n\n)(?:`{page.stem}<[^`]*>`\n\n)?", lambda _: line, text, count=1, flags=re.M)
+
+
 def put(file, new):
     if file.read_text() == new:
         return
@@ -71,6 +98,7 @@ for page in sorted((docs / "blocks").glob("*.md")):
         faults.append(f"{page.relative_to(root)}: its third line is `#include <quadrant/FOLDER/NAME.hpp>`")
     else:
         listed.setdefault(titles[found[1]], []).append(f"[{page.stem}](blocks/{page.name})")
+        put(page, with_type(page))
 text = ""
 for title in dict.fromkeys(titles.values()):
     if title in listed:

@@ -11,6 +11,17 @@
 
 namespace quadrant::inline v0 {
 
+namespace detail {
+/// What stands in a series behind this first block: it maps the same signal, and says its state.
+template <class Box, class First>
+concept in_series_with = maps<Box, typename First::input, typename First::input, real_of<First>> &&
+    requires(Box& box, const Box& as_it_is) {
+    typename Box::parameters;
+    box.reset();
+    as_it_is.now();
+};
+} // namespace detail
+
 /// Several blocks of one signal behind one another, in the order of the list: two notches, a notch and a
 /// low-pass.
 ///   y = last(... second(first(x)))
@@ -23,8 +34,7 @@ namespace quadrant::inline v0 {
 /// Cost: that of the blocks. Sums and feedback are not a series: write them as lines of a struct, see
 /// `cascade`.
 template <class First, class... Rest>
-requires maps<First, typename First::input, typename First::input> &&
-    (maps<Rest, typename First::input, typename First::input, real_of<First>>&&...) class series {
+requires detail::in_series_with<First, First> &&(detail::in_series_with<Rest, First>&&...) class series {
 public:
     using input = typename First::input;
     using output = input;
