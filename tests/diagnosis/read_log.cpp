@@ -149,6 +149,22 @@ TEST_CASE("read_log: a missing row is found among stamps that jitter as much as 
     CHECK(log.axes[0].position[22] == 21);
 }
 
+TEST_CASE("read_log: a missing row is found among stamps whose last digit is the period") {
+    std::vector<std::string> stamps, slower;
+    for (int k = 0; k < 3000; ++k) {
+        if (k != 1700) stamps.push_back(fmt::format("{:.3f}", 1e-3 * k));
+        slower.push_back(fmt::format("{:.3f}", std::round(1.02 * k) / 1000)); // a double step every 50 rows
+    }
+    const auto log = read(with_stamps(stamps));
+    CHECK(log.samples == 3000);
+    CHECK(std::count(log.axes[0].left_out.begin(), log.axes[0].left_out.end(), 1) == 1);
+    CHECK(log.axes[0].left_out[1700] == 1);
+    const auto other = read(with_stamps(slower));
+    CHECK(other.samples == 3000);
+    CHECK(other.sample_period_s == doctest::Approx(1.02e-3).epsilon(1e-4));
+    CHECK(other.axes[0].left_out.empty());
+}
+
 TEST_CASE("read_log: of an even clock many rows may be missing") {
     std::vector<std::string> stamps;
     for (int k = 0; k < 300; ++k)

@@ -141,9 +141,9 @@ private:
             if (enabled[k] >= 0.5) continue;
             stretches += k == 0 || enabled[k - 1] >= 0.5;
             ++off;
-            axis.left_out[k] = 1;
             axis.drive_off.resize(enabled.size(), 0);
-            axis.drive_off[k] = 1;
+            axis.drive_off[k] = axis.left_out[k] ? 2 : 1;
+            axis.left_out[k] = 1;
         }
         if (off > 0)
             tell(fmt::format(": the drive is off in {} samples ({} stretches): left out", off, stretches));

@@ -32,7 +32,7 @@ inline simulated_axis simulate_axis(const axis_description& axis, const axis_log
     out.force = residual_of(record, plant, acceleration);
     out.gap.force_rms_N = scored_rms(out.force);
     out.gap.noise_floor_force_rms_N =
-        force_floor(record, plant.mass, position_noise(innovation, record.score, resolution));
+        force_floor(record, plant.moving_mass(), position_noise(innovation, record.score, resolution));
     out.gap.bandwidth_Hz = record.bandwidth_Hz;
     if (where == force_places::told) out.where = regimes(out.force, record);
     for (place& p : out.where) p.finding = text_of(p.finding, axis.kind);

@@ -97,12 +97,13 @@ public:
     /// Step j of the record, in row k.
     void step(std::size_t k, std::size_t j) {
         const closed_input::plant& first = in_.plant_of[0];
+        const bool off = in_.off && in_.off[k];
+        const double began = static_cast<double>(first_) * in_.period;
         if (alike_)
-            plant_(scale_ * Real(first.set_point[j]), Real(first.its_velocity[j]), in_.off && in_.off[k], now_);
+            plant_(scale_ * Real(first.set_point[j]), Real(first.its_velocity[j]), off, now_, began);
         else
             plant_(scale_ * gathered([j](const closed_input::plant& p) { return p.set_point[j]; }),
-                   gathered([j](const closed_input::plant& p) { return p.its_velocity[j]; }),
-                   in_.off && in_.off[k], now_);
+                   gathered([j](const closed_input::plant& p) { return p.its_velocity[j]; }), off, now_, began);
         now_.time = now_.time + Real(h_);
     }
 

@@ -124,7 +124,8 @@ QUADRANT_DIAGNOSIS_DECL void predictor::pass_led(std::span<const plant_model> pl
     if (!acceleration) return;
     for (std::size_t i = 0; i < plants.size(); ++i) {
         acceleration[i] = acceleration_of(plants[i], position, period);
-        for (std::size_t k = 1; k + 1 < position.size(); ++k) acceleration[i][k] += left[i][k] / plants[i].mass;
+        for (std::size_t k = 1; k + 1 < position.size(); ++k)
+            acceleration[i][k] += left[i][k] / plants[i].moving_mass();
     }
 }
 

@@ -10,13 +10,13 @@
 namespace quadrant::inline v0::diagnosis::detail {
 
 /// The rows whose set-points a drive takes, one after another.
-inline std::vector<std::size_t> arrivals(const drive_model& d, std::size_t rows, double period,
-                                         std::span<const log_start> others) {
-    const set_point_arrivals clock(d, period);
+inline std::vector<std::size_t> arrivals(const drive_model& d, std::span<const double> set_points,
+                                         double period, std::span<const log_start> others) {
     std::vector<std::size_t> out;
     std::size_t first = 0;
     for (std::size_t log = 0; log <= others.size(); ++log) {
-        const std::size_t end = log < others.size() ? others[log].row : rows;
+        const std::size_t end = log < others.size() ? others[log].row : set_points.size();
+        const set_point_arrivals clock(d, period, set_points.subspan(first, end - first));
         for (long n = 0; first + clock.row(n) < end; ++n)
             if (const std::size_t row = first + clock.row(n); out.empty() || row > out.back())
                 out.push_back(row);

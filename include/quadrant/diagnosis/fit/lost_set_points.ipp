@@ -12,7 +12,7 @@ QUADRANT_DIAGNOSIS_DECL lossy_commands predictor::set_points_with_loss(const pla
     const bool tapped = drive->tapped();
     lossy_commands nothing{.applied = drive->set_point, .probability = a.probability};
     if (n < 4 * lasting) return nothing;
-    const auto arrival = detail::arrivals(plant.drive, n, period, drive->begins);
+    const auto arrival = detail::arrivals(plant.drive, drive->set_point, period, drive->begins);
     std::vector<double> asked(n);
     for (std::size_t i = 0; i < arrival.size(); ++i)
         std::fill(asked.begin() + static_cast<std::ptrdiff_t>(arrival[i]),

@@ -11,7 +11,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> residual_force(const plant_model& pl
                                                            std::span<const unsigned char> left_out) {
     const std::size_t n = position.size();
     auto raw = acceleration_of(plant, position, period);
-    for (std::size_t k = 1; k + 1 < n; ++k) raw[k] = plant.mass * (model_acceleration[k] - raw[k]);
+    const double mass = plant.moving_mass();
+    for (std::size_t k = 1; k + 1 < n; ++k) raw[k] = mass * (model_acceleration[k] - raw[k]);
     for (std::size_t k = 0; k < left_out.size(); ++k)
         if (left_out[k]) raw[k] = 0;
     return zero_phase(raw, bandwidth_Hz, period);

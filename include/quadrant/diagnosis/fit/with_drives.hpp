@@ -77,6 +77,50 @@ inline std::vector<double> needed_force(const plant_model& p, const driven_motio
     return out;
 }
 
+/// The set-points of rows that nobody read: a line, where the last one before them was held.
+inline void fill_in(std::vector<double>& set_point, std::size_t first, std::size_t behind) {
+    if (first == 0 || behind >= set_point.size()) return;
+    const double before = set_point[first - 1], next = set_point[behind];
+    for (std::size_t k = first; k < behind; ++k)
+        if (set_point[k] != before) return;
+    const double step = (next - before) / static_cast<double>(behind - first + 1);
+    for (std::size_t k = first; k < behind; ++k)
+        set_point[k] = before + step * static_cast<double>(k - first + 1);
+}
+
+/// Where the integral of a drive is found again: behind rows that nobody read, from what was measured of its
+/// force, else from what the described machine needs. Of a row or two a line knows enough.
+inline void find_unread_rows(driven_motion& m, const axis_log& log, const plant_model& described,
+                             double count) {
+    constexpr std::size_t few = 2, of_velocity = 3; // rows; as many as a velocity reaches to either side
+    const double rate = m.integral_rate(described.drive);
+    const auto is_read = [&](std::size_t k) {
+        return k >= log.left_out.size() || !log.left_out[k] || m.is_off(k);
+    };
+    const std::size_t n = m.position.size();
+    std::vector<double> force;
+    for (std::size_t first = 0; first < std::min(n, log.left_out.size()); ++first) {
+        if (is_read(first)) continue;
+        std::size_t behind = first;
+        while (behind < n && !is_read(behind)) ++behind;
+        fill_in(m.set_point, first, behind);
+        const std::size_t from = behind + of_velocity;
+        if (behind - first > few && rate > 0) {
+            std::size_t until = from;
+            while (until < n && is_read(until) && !m.is_off(until) &&
+                   static_cast<double>(until - from) < 3 / (rate * m.period))
+                ++until;
+            if (until >= from + of_velocity) {
+                if (force.empty()) force = m.tapped() ? m.measured : needed_force(described, m, count);
+                double sum = 0;
+                for (std::size_t k = from; k < until; ++k) sum += force[k];
+                m.unread.push_back({first, behind, from, until, sum / static_cast<double>(until - from)});
+            }
+        }
+        first = behind;
+    }
+}
+
 /// The log of an axis whose drive closes loops of its own, made ready: its command is what the actuator got.
 inline axis_log with_drive(const axis_description& axis, const axis_log& log, double period) {
     axis_log out = log;
@@ -90,7 +134,7 @@ inline axis_log with_drive(const axis_description& axis, const axis_log& log, do
     motion->position = seen_by_drive(axis, log);
     motion->off = log.drive_off;
     for (std::size_t k = 0; k < log.drive_off.size() && k < out.left_out.size(); ++k)
-        if (log.drive_off[k]) out.left_out[k] = 0; // the mechanics go on
+        if (log.drive_off[k] == 1) out.left_out[k] = 0; // the mechanics go on
     double step = 0;
     motion->measured = measured_behind(axis, log, step);
     out.asked = log.command;
@@ -103,6 +147,7 @@ inline axis_log with_drive(const axis_description& axis, const axis_log& log, do
     motion->find_velocity();
     const plant_model described(axis, count);
     motion->mass = described.moving_mass();
+    find_unread_rows(*motion, log, described, count);
     // No faster than five times the level goes: above it noise of the reading is all that an acceleration has.
     if (const double rate = motion->level_rate(model); rate > 0 && !motion->tapped())
         motion->needed = zero_phase(needed_force(described, *motion, count),

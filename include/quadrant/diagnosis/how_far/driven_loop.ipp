@@ -35,6 +35,7 @@ QUADRANT_DIAGNOSIS_DECL closed_loop_run simulate_driven(const axis_description& 
             }
             if (set_points) (*set_points)[k] = set_point[k];
         });
+    put_as_logged(out, log);
     return out;
 }
 

@@ -70,7 +70,7 @@ QUADRANT_DIAGNOSIS_DECL plant_model how_far::plant_of(const candidate& model) co
 
 QUADRANT_DIAGNOSIS_DECL how_far::stage
 how_far::at(const candidate& model, const std::optional<controller_description>& controller) const {
-    return {model.fit.plant.mass, force(model), loop(plant_of(model), controller)};
+    return {model.fit.plant.moving_mass(), force(model), loop(plant_of(model), controller)};
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<double> how_far::force(const candidate& model) const {

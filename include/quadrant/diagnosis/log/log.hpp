@@ -33,8 +33,8 @@ struct axis_log {
     std::vector<double> command;   ///< controller output of that row, after limit and DAC
     std::vector<double> reference_velocity{}, reference_acceleration{}; ///< empty: differences of the reference
     std::vector<double> velocity{}; ///< as the controller read it [m/s]; empty: differences of the position
-    std::vector<double>
-        other_acceleration{};  ///< of the axis that may be coupled to this one [m/s^2]; empty: alone
+    /// Of the axis that may be coupled to this one, over the row [m/s^2]; empty: alone.
+    std::vector<double> other_acceleration{};
     double reference_step = 0; ///< half of the last written digit bounds the rounding of the column; 0: exact
     double position_step = 0;  ///< the same for the position column
     double command_step = 0;   ///< the same for the command column
@@ -61,7 +61,8 @@ struct axis_log {
     double least_give = 0;
     std::vector<double>
         controller_reads{}; ///< where `position` is not what the controller read: that; else empty
-    std::vector<unsigned char> drive_off{}; ///< of each row: 1 where the drive is switched off; empty: never
+    /// Of each row: 1 where the drive is switched off, 2 where nobody read the row either; empty: never off.
+    std::vector<unsigned char> drive_off{};
     /// Of an axis whose drive closes loops of its own (with_drives()): `command` is then what the actuator got,
     /// as measured or as the described drive made it, and this is what the drive received and saw.
     std::shared_ptr<const driven_motion> drive{};

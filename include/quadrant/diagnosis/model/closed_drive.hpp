@@ -70,8 +70,8 @@ public:
     void add(Real force) { added_ = force; }
 
     /// One step with this set-point, of this velocity [a second]; returns the actuator's command. `off`: the
-    /// drive is switched off.
-    Real operator()(Real set_point, Real its_velocity, bool off, const surroundings& now) {
+    /// drive is switched off. `began`: in the record, the log whose time is `now` [s].
+    Real operator()(Real set_point, Real its_velocity, bool off, const surroundings& now, double began = 0) {
         const auto loop = velocity_loop<Real>::state::at(state_.v); // as they wake
         const auto follower = position_servo<Real>::state::at(state_.x);
         Real u(0);
@@ -80,8 +80,9 @@ public:
             follower_ = follower;
         } else {
             u = Real(numbers_.of_duty) * with_added(given(set_point, its_velocity));
-            const auto gives = either(less(now.time, Real(numbers_.off_from)),
-                                      greater_equal(now.time, Real(numbers_.off_until)));
+            const Real time = now.time + Real(began);
+            const auto gives =
+                either(less(time, Real(numbers_.off_from)), greater_equal(time, Real(numbers_.off_until)));
             u = select(gives, u, Real(0));
             loop_ = {select(gives, loop_.integral, loop.integral),
                      select(gives, loop_.filtered, loop.filtered)};
@@ -161,7 +162,9 @@ std::vector<double> run_closed(const plant_model& plant, const driven_motion& mo
             const auto r = clock.between(begin, begin + 1.0 / steps);
             if (!motion.added.empty())
                 axis.add(motion.added[static_cast<std::size_t>(std::max(0.0, begin - late + 1e-9))]);
-            command[k] += axis(scale * r.value, r.velocity / period, motion.is_off(k), now) / steps;
+            command[k] += axis(scale * r.value, r.velocity / period, motion.is_off(k), now,
+                               static_cast<double>(first) * period) /
+                          steps;
         }
     }
     return command;

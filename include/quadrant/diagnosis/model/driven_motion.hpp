@@ -21,17 +21,37 @@ struct log_start {
     double velocity;
 };
 
+/// In which row of each set-point's rows a column changes: a recorder begins at any of them. 0: it changes in
+/// every row, or at no steady rate.
+inline std::size_t row_of_change(std::span<const double> column, double every) {
+    const auto rows = static_cast<std::size_t>(std::lround(every));
+    if (rows < 2 || std::abs(every - static_cast<double>(rows)) > 1e-6) return 0;
+    std::vector<std::size_t> changes(rows, 0);
+    std::size_t all = 0;
+    for (std::size_t k = 1; k < column.size(); ++k)
+        if (column[k] != column[k - 1]) ++changes[k % rows], ++all;
+    const auto most = std::max_element(changes.begin(), changes.end());
+    return all > 0 && 20 * *most >= 19 * all ? static_cast<std::size_t>(most - changes.begin()) : 0;
+}
+
 /// When a drive takes the set-points of a record, on its own clock.
 struct set_point_arrivals {
     double every; ///< [rows]
+    double first; ///< row of the first one
 
-    set_point_arrivals(const drive_model& d, double period)
-        : every((d.set_point_period > 0 ? d.set_point_period / period : 1) *
-                (1 + std::clamp(d.clock_slip, -0.5, 0.5))) {}
+    /// `set_points`: one a row, of one log.
+    set_point_arrivals(const drive_model& d, double period, std::span<const double> set_points)
+        : set_point_arrivals(d.set_point_period > 0 ? d.set_point_period / period : 1, d, set_points) {}
     /// The newest row as the n-th one arrives: one comes twice, or never, where the two clocks differ.
     std::size_t row(long n) const {
-        return static_cast<std::size_t>(std::max(0.0, std::floor(static_cast<double>(n) * every + 1e-6)));
+        return static_cast<std::size_t>(
+            std::max(0.0, std::floor(first + static_cast<double>(n) * every + 1e-6)));
     }
+
+private:
+    set_point_arrivals(double rows, const drive_model& d, std::span<const double> set_points)
+        : every(rows * (1 + std::clamp(d.clock_slip, -0.5, 0.5))),
+          first(static_cast<double>(row_of_change(set_points, rows))) {}
 };
 
 /// The set-points of a record on the drive's clock: what its loops follow during each part of a row.
@@ -42,7 +62,7 @@ public:
                     std::span<const log_start> others)
         : values_(values), others_(others), line_(d.between),
           loss_(d.losses_known() ? 0 : std::clamp(d.loss, 0.0, 1.0)), delay_((d.delay + d.read.age) / period),
-          arrivals_(d, period), state_(line_state::at(values[0])) {}
+          drive_(d), period_(period), arrivals_(d, period, own_values()), state_(line_state::at(values[0])) {}
 
     /// Mean of the set-point, of its slope and of the velocity that a feedforward takes [a row] from `begin` to
     /// `end`, in rows; call with rising times.
@@ -51,8 +71,8 @@ public:
     };
     stretch between(double begin, double end) {
         if (!others_.empty() && begin >= static_cast<double>(others_.front().row)) begin_anew();
-        const double a = (begin - first_ - delay_) / arrivals_.every,
-                     b = (end - first_ - delay_) / arrivals_.every;
+        const double since = first_ + delay_ + arrivals_.first, a = (begin - since) / arrivals_.every,
+                     b = (end - since) / arrivals_.every;
         stretch out{0, 0, 0};
         for (double from = a; from < b;) { // pieces without an arrival
             const double to = std::min(b, static_cast<double>(next_));
@@ -73,11 +93,17 @@ public:
 private:
     using line_state = set_point_line<>::state;
 
+    /// Those of the log that runs.
+    std::span<const double> own_values() const {
+        return others_.empty() ? values_
+                               : values_.first(others_.front().row - static_cast<std::size_t>(first_));
+    }
     void begin_anew() {
         const std::size_t row = others_.front().row;
         others_ = others_.subspan(1);
         values_ = values_.subspan(row - static_cast<std::size_t>(first_));
         first_ = static_cast<double>(row);
+        arrivals_ = set_point_arrivals(drive_, period_, own_values());
         state_ = line_state::at(values_[0]);
         next_ = 0;
     }
@@ -92,8 +118,10 @@ private:
     std::span<const log_start> others_;
     set_point_line<> line_;
     double loss_, delay_;
-    set_point_arrivals arrivals_;
     double first_ = 0; ///< row of the log that runs
+    const drive_model& drive_;
+    double period_;
+    set_point_arrivals arrivals_;
     line_state state_;
     long next_ = 0; ///< the set-point that arrives next
 };
@@ -198,6 +226,14 @@ struct driven_motion {
     /// the level at which a replayed integral stands; empty: it stands where the replay takes it.
     std::vector<double> needed{};
     double mass = 0;
+    /// Rows that nobody read, from `first` to before `behind`, and what the drive gave from `from` to `until`
+    /// on average [N], as it was measured or as the described machine needs it. A replay gives that meanwhile,
+    /// and finds its integral again from it.
+    struct unread_rows {
+        std::size_t first, behind, from, until;
+        double force;
+    };
+    std::vector<unread_rows> unread{};
     std::vector<log_start> begins{}; ///< other logs behind the first one
     set_point_memory memory{};       ///< of set_point: not asked before that is whole
     double to_position =
@@ -221,7 +257,11 @@ struct driven_motion {
     /// limit is judged near the level that the motion needs, to a quarter of it: what a described plant is
     /// wrong by must not move a limit that acts. What is given out is as if nothing had been lifted.
     double level_rate(const drive_model& d) const {
-        if (!(mass > 0) || !d.has_integral() || !std::isfinite(d.force_limit)) return 0;
+        return std::isfinite(d.force_limit) ? integral_rate(d) : 0;
+    }
+    /// How fast the integral of this drive moves the axis [1/s]; 0: it has none.
+    double integral_rate(const drive_model& d) const {
+        if (!(mass > 0) || !d.has_integral()) return 0;
         const double of_integral = d.velocity_integral / mass;
         return d.kind == drive_kind::position && d.position_gain > 0 ? std::cbrt(d.position_gain * of_integral)
                                                                      : std::sqrt(of_integral);
@@ -379,12 +419,13 @@ private:
     }
     /// use(row, entry, set-point, its velocity [a second], position, velocity).
     template <class Use> void each_part(const drive_model& d, Use use) const {
-        const auto points = follows(d, parts);
-        const std::size_t n = position.size();
-        for (std::size_t k = 0; k < n; ++k)
+        each_part(*follows(d, parts), 0, position.size(), use);
+    }
+    template <class Use>
+    void each_part(const followed_set_points& points, std::size_t first, std::size_t behind, Use use) const {
+        for (std::size_t k = first; k < behind; ++k)
             for (std::size_t at = k * parts; at < (k + 1) * parts; ++at)
-                use(k, at, points->value[at], points->velocity[at], position_in_parts[at],
-                    velocity_in_parts[at]);
+                use(k, at, points.value[at], points.velocity[at], position_in_parts[at], velocity_in_parts[at]);
     }
     static std::vector<double> in_the_middle_of_parts(const std::vector<double>& x) {
         std::vector<double> out;
@@ -433,6 +474,19 @@ private:
         velocity_loop<> of_velocity_;
         bool takes_velocity_;
     };
+    /// The loop behind rows that nobody read: its integral is what the drive gave less what it gives without.
+    velocity_loop<>::state found_again(const unread_rows& gap, const loops& asks,
+                                       const followed_set_points& points, double scale, double limit) const {
+        auto without = velocity_loop<>::state::at(velocity[gap.behind]);
+        double sum = 0;
+        each_part(points, gap.behind, gap.until,
+                  [&](std::size_t k, std::size_t, double r, double slope, double x, double v) {
+                      const double f = asks(without, scale * r, slope, x, v);
+                      if (k >= gap.from) sum += f;
+                  });
+        const double force = gap.force - sum / static_cast<double>((gap.until - gap.from) * parts);
+        return velocity_loop<>::state::at(velocity[gap.behind], std::clamp(force, -limit, limit));
+    }
     law_in_parts force(const drive_model& d) const {
         const bool has_limit = std::isfinite(d.force_limit);
         const std::size_t n = position.size() * parts, n_of_limit = has_limit && tapped() ? n : 0;
@@ -447,29 +501,41 @@ private:
         const double rate = needed.empty() ? 0 : level_rate(d) * period / parts, follow = 1 - std::exp(-rate),
                      smooth = 1 - std::exp(-5 * rate);
         double lifted = 0, beside = 0; // of the integral, so far; needed less given, without its noise
-        each_part(d, [&](std::size_t k, std::size_t at, double r, double slope, double x, double v) {
-            const double on = share_on(d, at);
-            if (is_off(k) || on == 0) {
-                s = velocity_loop<>::state::at(v);
-                lifted = beside = 0;
-                return;
-            }
-            if (n_of_limit > 0) {
-                auto before = s;
-                out.asked[at] = on * asks(before, scale * r, slope, x, v);
-                out.lifted[at] = on * lifted;
-            }
-            const double f = law(s, scale * r, slope, x, v);
-            out.given[at] = on * (f - lifted);
-            if (follow > 0) {
-                beside += smooth * (needed[k] - f - beside);
-                const double kept = d.force_limit / 4,
-                             lift = follow * (beside - std::clamp(beside, -kept, kept)),
-                             to = std::clamp(s.integral + lift, -d.force_limit, d.force_limit);
-                lifted += to - s.integral;
-                s.integral = to;
-            }
-        });
+        const auto points = follows(d, parts);
+        auto gap = d.has_integral() ? unread.begin() : unread.end();
+        each_part(*points, 0, position.size(),
+                  [&](std::size_t k, std::size_t at, double r, double slope, double x, double v) {
+                      if (gap != unread.end() && k >= gap->first) {
+                          if (k < gap->behind) {
+                              out.given[at] = gap->force;
+                              if (n_of_limit > 0) out.asked[at] = gap->force;
+                              return;
+                          }
+                          s = found_again(*gap++, asks, *points, scale, d.force_limit);
+                          lifted = beside = 0;
+                      }
+                      const double on = share_on(d, at);
+                      if (is_off(k) || on == 0) {
+                          s = velocity_loop<>::state::at(v);
+                          lifted = beside = 0;
+                          return;
+                      }
+                      if (n_of_limit > 0) {
+                          auto before = s;
+                          out.asked[at] = on * asks(before, scale * r, slope, x, v);
+                          out.lifted[at] = on * lifted;
+                      }
+                      const double f = law(s, scale * r, slope, x, v);
+                      out.given[at] = on * (f - lifted);
+                      if (follow > 0) {
+                          beside += smooth * (needed[k] - f - beside);
+                          const double kept = d.force_limit / 4,
+                                       lift = follow * (beside - std::clamp(beside, -kept, kept)),
+                                       to = std::clamp(s.integral + lift, -d.force_limit, d.force_limit);
+                          lifted += to - s.integral;
+                          s.integral = to;
+                      }
+                  });
         return out;
     }
 };

@@ -7,6 +7,7 @@
 #include "../machine/own_controller.hpp"
 
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace quadrant::inline v0::diagnosis {
@@ -64,6 +65,11 @@ struct loop_columns {
                 part(velocity)};
     }
 };
+
+/// Rows from one to before another through which a loop runs: between them are more than four rows that do not
+/// count, of which nothing is known. None is shorter than eight rows. `left_out`: empty, or one a row.
+QUADRANT_DIAGNOSIS_DECL std::vector<std::pair<std::size_t, std::size_t>>
+stretches(std::span<const unsigned char> left_out, std::size_t rows);
 
 /// The inputs of a controller row by row. Before row 0 both motions were even, as from row 0 to row 1.
 class loop_inputs {

@@ -85,27 +85,36 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_stretch(const controller_desc
     return std::move(by_all.second < until_then.second ? by_all.first : until_then.first);
 }
 
-QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_controller(const controller_description& c,
-                                                              const actuator_description& a, double period,
-                                                              const loop_columns& log) {
-    if (log.left_out.empty()) return replay_stretch(c, a, period, log);
-    constexpr std::size_t bridged = 4, forgets = 64, least = 8; // rows
-    std::vector<double> out(log.command.begin(), log.command.end());
-    const std::size_t rows = out.size();
+QUADRANT_DIAGNOSIS_DECL std::vector<std::pair<std::size_t, std::size_t>>
+stretches(std::span<const unsigned char> left_out, std::size_t rows) {
+    if (left_out.empty()) return {{0, rows}};
+    constexpr std::size_t bridged = 4, least = 8; // rows
+    std::vector<std::pair<std::size_t, std::size_t>> out;
     const auto gap_from = [&](std::size_t k) { // how many rows are left out from here on
         std::size_t end = k;
-        while (end < rows && log.left_out[end]) ++end;
+        while (end < rows && left_out[end]) ++end;
         return end - k;
     };
     for (std::size_t first = 0; first < rows;) {
         std::size_t last = first, gap = 0;
         while (last < rows && (gap = gap_from(last)) <= bridged) last += std::max<std::size_t>(1, gap);
         last = std::min(last, rows);
-        if (last - first >= least) {
-            const auto replayed = replay_stretch(c, a, period, log.part(first, last - first));
-            std::copy(replayed.begin(), replayed.end(), out.begin() + static_cast<std::ptrdiff_t>(first));
-        }
+        if (last - first >= least) out.emplace_back(first, last);
         first = last + std::max<std::size_t>(1, gap);
+    }
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_controller(const controller_description& c,
+                                                              const actuator_description& a, double period,
+                                                              const loop_columns& log) {
+    if (log.left_out.empty()) return replay_stretch(c, a, period, log);
+    constexpr std::size_t forgets = 64; // rows
+    std::vector<double> out(log.command.begin(), log.command.end());
+    const std::size_t rows = out.size();
+    for (const auto& [first, last] : stretches(log.left_out, rows)) {
+        const auto replayed = replay_stretch(c, a, period, log.part(first, last - first));
+        std::copy(replayed.begin(), replayed.end(), out.begin() + static_cast<std::ptrdiff_t>(first));
     }
     for (std::size_t k = 0, since = forgets; k < rows; ++k) {
         since = log.left_out[k] ? 0 : since + 1;

@@ -96,11 +96,12 @@ QUADRANT_DIAGNOSIS_DECL bool axis_floors::settled(const std::vector<std::vector<
 }
 
 QUADRANT_DIAGNOSIS_DECL double axis_floors::floor_force(const candidate& c) const {
-    return floor_force(c.fit.plant.mass, noise(c));
+    return floor_force(c.fit.plant.moving_mass(), noise(c));
 }
 
 QUADRANT_DIAGNOSIS_DECL double axis_floors::floor_force_of_described_mass(const candidate& c) const {
-    return floor_force(record_.replayed() ? c.fit.plant.mass : given_.fit.plant.mass, noise(c));
+    return floor_force(record_.replayed() ? c.fit.plant.moving_mass() : given_.fit.plant.moving_mass(),
+                       noise(c));
 }
 
 QUADRANT_DIAGNOSIS_DECL double axis_floors::floor_force(double mass, double noise) const {

@@ -84,7 +84,7 @@ QUADRANT_DIAGNOSIS_DECL double axis_models::held_out_force(const candidate& c) c
 }
 
 QUADRANT_DIAGNOSIS_DECL double axis_models::held_out_force_of_described_mass(const candidate& c) const {
-    const double lighter = given_.fit.plant.mass / c.fit.plant.mass;
+    const double lighter = given_.fit.plant.moving_mass() / c.fit.plant.moving_mass();
     return held_out_force(c) * (record_.replayed() ? 1 : lighter); // what a drive makes otherwise is a force
 }
 

@@ -104,9 +104,10 @@ inline double left_in_both(const axis_case& c) {
 /// Whether the hold-out log shows a gap that the log holds little of: only the other way round is there
 /// something to fit.
 inline bool hides_what_the_other_shows(const axis_case& c) {
-    if (!c.tested_apart() || c.record.replayed() || c.settled_on_second || c.controller_differs() ||
-        c.models.over())
-        return false;
+    if (!c.tested_apart() || c.settled_on_second || c.controller_differs() || c.models.over()) return false;
+    // A replay leaves more of a hold-out log beside names that are right: where its integral began there is
+    // free.
+    if (c.record.replayed() && !c.best().effects.empty()) return false;
     return c.settled || c.second_log(c.best()).force > 2 * c.models.held_out_force(c.best());
 }
 
