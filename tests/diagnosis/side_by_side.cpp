@@ -76,6 +76,32 @@ TEST_CASE("predictor: more plants than a pass holds, with different joints, are 
     }
 }
 
+TEST_CASE("predictor: a law of one's own remembers the same beside a plant with another delay") {
+    static constexpr own_law clocked{
+        .name = "clocked", // pushes with the time that went by
+        .numbers = {{{.key = "growth", .low = 0, .high = 10}}},
+        .law = [](const law_point& p, const own_law::values& n, own_law::memory& m) {
+            m[0] += p.step;
+            return n[0] * m[0];
+        }};
+    constexpr double period = 5e-4;
+    const std::vector<double> still(200, 0.0);
+    plant_model whole_rows;
+    whole_rows.mass = whole_rows.force_constant = 1;
+    whole_rows.own.of(clocked)[0] = 1;
+    whole_rows.delay = period;
+    plant_model later = whole_rows;
+    later.delay = 1.3 * period;
+    const predictor observer{.period = period, .corner_Hz = 100, .position = still, .command = still};
+    const auto of = [&](const std::vector<plant_model>& plants) {
+        std::vector<std::vector<double>> e(plants.size());
+        observer.run(plants, e);
+        return e;
+    };
+    const auto alone = of({whole_rows}), beside = of({whole_rows, later}), other = of({later});
+    CHECK(beside[0] == alone[0]);
+    CHECK(beside[1] == other[0]);
+}
 TEST_CASE("fit: behind a step that fails all with more damping are asked for at once, and the first that is "
           "better is taken") {
     const heavier machine;

@@ -50,7 +50,16 @@ template <class Real, class Contact, class Laws> struct servo_state {
         put(apart.w, other.apart.w);
         put(apart.flank, other.apart.flank);
         take_friction(here, other.friction);
-        laws = other.laws;
+        take_memory(here, other.laws);
+    }
+    void take_memory(const mask_of<Real>& here, const typename Laws::state& other) noexcept {
+        if constexpr (requires { laws[0]; }) { // one a lane
+            const Real one = select(here, Real(1), Real(0));
+            for (std::size_t i = 0; i < lane_count<Real>; ++i)
+                if (lane(one, i) != 0) laws[i] = other[i];
+        } else if (any(here)) {
+            laws = other;
+        }
     }
     void take_friction(const mask_of<Real>& here, const typename Contact::state& other) noexcept {
         for (std::size_t i = 0; i < friction.force.size(); ++i) {
