@@ -61,15 +61,11 @@ def arguments_of(declared):
     return ", ".join(out)
 
 
-def with_type(page):
-    """The text of a page with the type of its block, where that is a template."""
-    text = page.read_text()
-    header = re.search(r"^`#include <(quadrant/\w+/\w+\.hpp)>`$", text, re.M)
-    if not header:
-        return text
-    declared = re.search(rf"^template <([^;{{}}]*?)>\s+(?:requires[^;{{}}]*?\s)?(?:class|struct) {page.stem}\b", (root / "include" / header[1]).read_text(), re.M)
+def with_type(page, header):
+    """The text of a page with the type of its block, where that is a template; `header`: the page's line that includes it."""
+    declared = re.search(rf"^template <([^;{{}}]*?)>\s+(?:requires[^;{{}}]*?\s)?(?:class|struct) {page.stem}\b", (include / header["path"]).read_text(), re.M)
     line = textwrap.fill(f"`{page.stem}<{arguments_of(' '.join(declared[1].split()))}>`", 112) + "\n\n" if declared else ""
-    return re.sub(rf"(?<=^{re.escape(header[0])}\n\n)(?:`{page.stem}<[^`]*>`\n\n)?", lambda _: line, text, count=1, flags=re.M)
+    return re.sub(rf"(?<=^{re.escape(header[0])}\n\n)(?:`{page.stem}<[^`]*>`\n\n)?", lambda _: line, page.read_text(), count=1, flags=re.M)
 
 
 def put(file, new):
@@ -93,12 +89,12 @@ put(everything, re.sub(r'(?:#include "[^"]+"\n)+', "\n".join(lines) + "\n", ever
 
 listed = {}
 for page in sorted((docs / "blocks").glob("*.md")):
-    found = re.search(r"^`#include <quadrant/(\w+)/\w+\.hpp>`$", page.read_text(), re.M)
-    if not found or found[1] not in titles:
+    found = re.search(r"^`#include <quadrant/(?P<path>(?P<folder>\w+)/\w+\.hpp)>`$", page.read_text(), re.M)
+    if not found or found["folder"] not in titles:
         faults.append(f"{page.relative_to(root)}: its third line is `#include <quadrant/FOLDER/NAME.hpp>`")
     else:
-        listed.setdefault(titles[found[1]], []).append(f"[{page.stem}](blocks/{page.name})")
-        put(page, with_type(page))
+        listed.setdefault(titles[found["folder"]], []).append(f"[{page.stem}](blocks/{page.name})")
+        put(page, with_type(page, found))
 text = ""
 for title in dict.fromkeys(titles.values()):
     if title in listed:

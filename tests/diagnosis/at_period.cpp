@@ -45,3 +45,27 @@ TEST_CASE(
         if (t < 599 * period || t > 800 * period) CHECK(b.drive_off[k] == 0);
     }
 }
+TEST_CASE("another sample period: rows that nobody read while the drive was off stay so") {
+    constexpr double period = 1e-3, other = 4e-4;
+    axis_log axis;
+    axis.name = "q";
+    for (int k = 0; k < 1000; ++k) axis.position.push_back(std::sin(6 * period * k));
+    axis.reference = axis.command = axis.position;
+    axis.drive_off.assign(1000, 0);
+    for (std::size_t k = 600; k < 800; ++k) axis.drive_off[k] = k >= 650 && k < 700 ? 2 : 1;
+    axis.left_out.assign(1000, 0);
+    for (std::size_t k = 600; k < 800; ++k) axis.left_out[k] = 1;
+    machine_log log;
+    log.file = "log.csv";
+    log.sample_period_s = period;
+    log.samples = 1000;
+    log.axes = {axis};
+    const axis_log b = at_period(log, other).axes.front();
+    const auto at = [&](double row) {
+        return static_cast<int>(b.drive_off[std::size_t(row * period / other)]);
+    };
+    CHECK(at(580) == 0);
+    CHECK(at(620) == 1);
+    CHECK(at(675) == 2);
+    CHECK(at(750) == 1);
+}

@@ -63,3 +63,16 @@ TEST_CASE("Stribeck friction: a servo whose contact gives way by two counts has 
         CHECK(workshop::claims(d).empty());
     }
 }
+TEST_CASE("cogging: one bump along the travel, whose period ends at the end of its search, is no claim" *
+          doctest::test_suite("all")) {
+    workshop::machine real;
+    const auto file = workshop::described(real);
+    real.stranger = [](double x, double, double) { return 20 * std::exp(-x * x / (0.01 * 0.01)); };
+    const auto d = workshop::diagnosed(file, real);
+    CAPTURE(said(d));
+    bool suspected = false;
+    for (const cause& c : d.causes)
+        if (c.effect == "cogging") suspected = c.parameters.front().on_bound;
+    CHECK(suspected);
+    CHECK(workshop::claims(d).empty());
+}

@@ -28,7 +28,14 @@ inline machine_log at_period(const machine_log& log, double period) {
             b.command = smooth(a.command);
         else
             b.command = rows.held(a.command);
-        if (!a.drive_off.empty()) b.drive_off = rows.left_out(a.drive_off);
+        if (!a.drive_off.empty()) {
+            b.drive_off = rows.left_out(a.drive_off);
+            auto unread = a.drive_off;
+            for (unsigned char& off : unread) off = off == 2;
+            const auto nor_read = rows.left_out(unread);
+            for (std::size_t k = 0; k < nor_read.size(); ++k)
+                if (nor_read[k]) b.drive_off[k] = 2;
+        }
         if (!a.left_out.empty()) b.left_out = rows.left_out(a.left_out);
         error = std::max(error, rows.interpolation_error(a.position));
         out.axes.push_back(std::move(b));

@@ -338,8 +338,8 @@ struct driven_motion {
     }
 
 private:
-    /// What a drive's law gives in each part of each row; of a force that has a limit also what the law asks
-    /// before that, and by how much its integral was lifted.
+    /// What a drive's law gives in each part of each row; of a force that has a limit, where a tap reads it at
+    /// a moment, also what the law asks before that, and by how much its integral was lifted.
     struct law_in_parts {
         std::vector<double> given, asked{}, lifted{};
     };
@@ -488,8 +488,9 @@ private:
         return velocity_loop<>::state::at(velocity[gap.behind], std::clamp(force, -limit, limit));
     }
     law_in_parts force(const drive_model& d) const {
-        const bool has_limit = std::isfinite(d.force_limit);
-        const std::size_t n = position.size() * parts, n_of_limit = has_limit && tapped() ? n : 0;
+        const bool cut_off_at_tap =
+            std::isfinite(d.force_limit) && tapped() && d.read.tap != tap_reading::row_mean;
+        const std::size_t n = position.size() * parts, n_of_limit = cut_off_at_tap ? n : 0;
         law_in_parts out{std::vector<double>(n, 0.0), std::vector<double>(n_of_limit, 0.0),
                          std::vector<double>(n_of_limit, 0.0)};
         auto numbers = d.position_loop_numbers();
@@ -508,7 +509,7 @@ private:
                       if (gap != unread.end() && k >= gap->first) {
                           if (k < gap->behind) {
                               out.given[at] = gap->force;
-                              if (n_of_limit > 0) out.asked[at] = gap->force;
+                              if (cut_off_at_tap) out.asked[at] = gap->force;
                               return;
                           }
                           s = found_again(*gap++, asks, *points, scale, d.force_limit);
@@ -520,7 +521,7 @@ private:
                           lifted = beside = 0;
                           return;
                       }
-                      if (n_of_limit > 0) {
+                      if (cut_off_at_tap) {
                           auto before = s;
                           out.asked[at] = on * asks(before, scale * r, slope, x, v);
                           out.lifted[at] = on * lifted;
