@@ -79,7 +79,8 @@ def check_links(page):
 # --- 2. Code that is shown is code that is compiled. ---
 compiled = re.compile(r"(examples|include|docs/generators)/\S+\.(cpp|hpp|c|h)")
 marker = re.compile(r"<!-- from (\S+) -->\n\s*\Z")
-given = re.compile(r"<!-- given\n((?:(?!-->).)*)-->\n\s*\Z", re.S)
+fold = "<details><summary>What the block below uses</summary>"
+unfolded = re.compile(re.escape(fold) + r"\n\n```cpp\n(?:(?!```).)*```\n\n</details>\n\s*\Z", re.S)
 run = re.compile(r"(examples|tests)/python/\S+\.py")  # by tests/python
 languages = {"", "cpp", "python", "sh", "json"}
 
@@ -89,7 +90,7 @@ def lines_of(text):
 
 
 def check_snippets(page):
-    """C++ is text of a file (<!-- from FILE -->) or compiled by snippets.py, with what stands in <!-- given ... --> above it."""
+    """C++ is text of a file (<!-- from FILE -->) or compiled by snippets.py, with what is folded away above it."""
     tells_how = re.match(r"docs/(tutorial|howto/|explanation/)", page.relative_to(root).as_posix())
     text, marked, completed = page.read_text(), 0, 0
     for match in fence.finditer(text):
@@ -102,7 +103,7 @@ def check_snippets(page):
             continue
         from_file = marker.search(text, 0, match.start())
         if not from_file:
-            completed += bool(given.search(text, 0, match.start()))
+            completed += bool(unfolded.search(text, 0, match.start()))
             if tells_how:
                 fault(page, line, "this block needs <!-- from FILE --> above it: a program that a test compiles or runs")
             continue
@@ -115,9 +116,9 @@ def check_snippets(page):
         shown, there = lines_of(match.group(3)), lines_of(source.read_text())
         if not any(shown) or not any(there[k : k + len(shown)] == shown for k in range(len(there))):
             fault(page, line, f"this block does not stand like that in {from_file.group(1)}")
-    for mark, used in (("from ", marked), ("given", completed)):
-        if text.count(f"<!-- {mark}") != used:
-            fault(page, 1, f"{text.count(f'<!-- {mark}')} marks <!-- {mark.strip()}, {used} blocks of code right below one")
+    for mark, used in (("<!-- from ", marked), (fold, completed)):
+        if text.count(mark) != used:
+            fault(page, 1, f"{text.count(mark)} marks {mark.strip()}, {used} blocks of code right below one")
 
 
 # --- 3. Commands have the options that they are shown with. ---

@@ -5,11 +5,15 @@
     python3 tests/docs/snippets.py COMPILER OPTION...        e.g. g++ -std=c++20 -Iinclude
 
 All blocks become one source, each a function of its own, parsed once. What a block uses and does not show stands above it, in a
-comment that a reader does not see:
+block that a reader unfolds:
 
-    <!-- given
+    <details><summary>What the block below uses</summary>
+
+    ```cpp
     extern force raw;
-    -->
+    ```
+
+    </details>
 
 Errors name the page and its line. What the pages use everywhere: quadrant, its literals and its
 quantities (position, velocity, force, voltage, ...), as docs/use_in_a_project.md says.
@@ -21,9 +25,9 @@ import tempfile
 from pathlib import Path
 
 root = Path(__file__).parents[2]
-fence = re.compile(r"^(\s*)```cpp[ \t]*\n(.*?)^\s*```[ \t]*$", re.M | re.S)
+fence = re.compile(r"^([ \t]*)```cpp[ \t]*\n(.*?)^\s*```[ \t]*$", re.M | re.S)
 from_file = re.compile(r"<!-- from \S+ -->\n\s*\Z")
-given = re.compile(r"<!-- given\n((?:(?!-->).)*)-->\n\s*\Z", re.S)
+used = re.compile(r"<details><summary>What the block below uses</summary>\n\n```cpp\n((?:(?!```).)*)```\n\n</details>", re.S)
 
 prelude = """#include <quadrant/quadrant.hpp>
 using namespace quadrant;
@@ -35,10 +39,12 @@ using namespace quadrant::quantities;
 def blocks():
     for page in [root / "README.md", *sorted((root / "docs").rglob("*.md"))]:
         text = page.read_text()
+        above_what = {fold.end(): fold for fold in used.finditer(text)}
+        folded = {fold.start(1) for fold in above_what.values()}
         for block in fence.finditer(text):
-            if from_file.search(text, 0, block.start()):
+            if from_file.search(text, 0, block.start()) or block.start(2) in folded:
                 continue
-            above = given.search(text, 0, block.start())
+            above = above_what.get(len(text[: block.start()].rstrip()))
             line_of = lambda offset: text.count("\n", 0, offset) + 1
             yield page.relative_to(root), (line_of(above.start(1)), above.group(1)) if above else None, (
                 line_of(block.start(2)),
