@@ -453,7 +453,8 @@ TEST_CASE("maxwell_slip: refuses what no contact has, in the name of the box tha
     CHECK(says([](P& p) { p.forces[1] = -55_N; }) == "maxwell_slip.forces = -55 N: must be finite and above 0");
     CHECK(says([](P& p) { p.forces[0] = 90_N; }) ==
           "maxwell_slip.forces (sum) = 177.5 N: must not be above static_level (177 N)");
-    CHECK(says([](P& p) { p.forces = {}; }) == "maxwell_slip.forces = 0 N: must be finite and above 0");
+    CHECK(says([](P& p) { p.forces = {}; }) ==
+          "maxwell_slip.weights (sum) = 0: must be 1, or forces must be given in their place");
     CHECK(says([](P& p) { p.forces = {}, p.weights = {0.4, 0.3, 0.2, 0.1}; }) == "taken");
     CHECK(says([](P& p) {
               p.forces = {}, p.weights = {0.4, 0.3, 0.2, 0.2};

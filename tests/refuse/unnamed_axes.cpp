@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 // Two plain voltages: which is whose?
-// MUST SAY: along<quadrant::v0::axis::x | along<quadrant::axis::x | along<axis::x
+// MUST SAY: along<quadrant::v0::x_direction | along<quadrant::x_direction | along<x_direction
 // MUST SAY: could not convert | no viable conversion | chosen constructor is explicit
 // AT MOST: gcc 4600, clang 9500
 #include "quadrant/loop/xy_table.hpp"

@@ -7,10 +7,8 @@
 namespace quadrant::inline v0 {
 
 /// Names of the axes, for the compiler.
-namespace axis {
-struct x {};
-struct y {};
-} // namespace axis
+struct x_direction {};
+struct y_direction {};
 
 /// A quantity that belongs to one axis. It is read as a plain one; a plain one becomes it only by name,
 /// `on_x(u)`, and one
@@ -30,18 +28,18 @@ private:
     Quantity q_{};
 };
 template <class Unit, class Real> constexpr auto on_x(const quantity<Unit, Real>& q) {
-    return along<axis::x, quantity<Unit, Real>>(q);
+    return along<x_direction, quantity<Unit, Real>>(q);
 }
 template <class Unit, class Real> constexpr auto on_y(const quantity<Unit, Real>& q) {
-    return along<axis::y, quantity<Unit, Real>>(q);
+    return along<y_direction, quantity<Unit, Real>>(q);
 }
-template <class Unit, class Real> void on_x(const along<axis::y, quantity<Unit, Real>>&) = delete;
-template <class Unit, class Real> void on_y(const along<axis::x, quantity<Unit, Real>>&) = delete;
+template <class Unit, class Real> void on_x(const along<y_direction, quantity<Unit, Real>>&) = delete;
+template <class Unit, class Real> void on_y(const along<x_direction, quantity<Unit, Real>>&) = delete;
 
 /// One quantity of each axis.
 template <class Quantity> struct xy {
-    along<axis::x, Quantity> x;
-    along<axis::y, Quantity> y;
+    along<x_direction, Quantity> x;
+    along<y_direction, Quantity> y;
 };
 
 } // namespace quadrant::inline v0

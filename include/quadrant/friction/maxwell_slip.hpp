@@ -220,12 +220,16 @@ private:
     }
     static std::array<Real, N> normalised(const parameters& p) {
         number weights(0), forces(0);
-        bool by_force = true; // no weight given
+        bool by_force = true, none = true; // no weight given; neither weight nor force
         for (std::size_t i = 0; i < N; ++i) {
             weights += p.weights[i];
             forces += p.forces[i].value();
             by_force = by_force && detail::plain(p.weights[i]) == 0;
+            none = none && by_force && detail::plain(p.forces[i].value()) == 0;
         }
+        if (none)
+            require(false, "maxwell_slip.weights (sum)", weights,
+                    "must be 1, or forces must be given in their place");
         for (std::size_t i = 0; i < N; ++i) {
             if (by_force)
                 require_positive<Real>("maxwell_slip.forces", p.forces[i]);
