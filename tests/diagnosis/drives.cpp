@@ -580,8 +580,8 @@ TEST_CASE("what no drive has is refused by key, value and rule") {
     CHECK(refused(of_p + R"(, "supply_V": 12)") ==
           "m.json: axes.q.drive.supply_V: belongs to a drive of kind position_servo; this one is velocity");
     CHECK(refused(of_p + R"(, "velocity_gian": 1)").find("unknown key") != std::string::npos);
-    CHECK(refused(of_position + R"(, "set_point_period_s": 0.0001)").find("must be at least sample_period_s") !=
-          std::string::npos);
+    CHECK(refused(of_position + R"(, "set_point_period_s": 1e-7)")
+              .find("must be at least sample_period_s (0.001) over 1000") != std::string::npos);
 }
 TEST_CASE("a log whose command the drive does not take is refused with the column to record") {
     const auto r = recorded(takes::set_points, p_drive);

@@ -5,6 +5,7 @@
 #include "text/bad_input.hpp"
 #include "verdict/looked_axis.hpp"
 #include "verdict/own_words.hpp"
+#include "verdict/set_points_between_rows.hpp"
 
 namespace quadrant::inline v0::diagnosis {
 
@@ -66,6 +67,7 @@ inline void diagnose_forces(diagnosis_result& out, const axis_description& a, co
             return note.starts_with(fmt::format("axis {}: controller kind ", a.name));
         });
     looked.look(logs, tell, limits);
+    look_between_rows(looked, a, logged, logs, tell, all, limits);
     if (const auto constant = looked.found_by_force() > 0 ? looked.force_constant() : std::nullopt) {
         axis_description by = looked.ready->axis;
         by.plant.force_constant_N_per_V = *constant;

@@ -4,10 +4,10 @@
 #include "log/gantry_pair.hpp"
 #include "log/log.hpp"
 #include "machine/machine.hpp"
+#include "machine/set_point_rows.hpp"
 #include "text/bad_input.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -20,22 +20,6 @@ inline bool has_period_of(const machine_description& machine, const machine_log&
 }
 
 namespace detail {
-
-/// Every how many rows a column of set-points changes while it changes at all; 1: in every row, or at no steady
-/// rate.
-inline std::size_t rows_of_a_set_point(const std::vector<double>& x) {
-    constexpr std::size_t longest = 64, enough = 50;
-    std::array<std::size_t, longest + 1> times{};
-    std::size_t all = 0, last = 0;
-    for (std::size_t k = 1; k < x.size(); ++k) {
-        if (x[k] == x[k - 1]) continue;
-        if (last > 0 && k - last <= longest) ++times[k - last], ++all;
-        last = k;
-    }
-    const auto most = std::max_element(times.begin(), times.end());
-    const bool steady = all >= enough && 20 * *most >= 19 * all;
-    return steady ? static_cast<std::size_t>(most - times.begin()) : 1;
-}
 
 /// Refuses a log whose command a drive of this kind does not take.
 inline void check_drive(const axis_description& axis, const axis_log& log, const std::string& machine,
@@ -160,18 +144,19 @@ inline void check_loops(const machine_description& machine, machine_log& log) {
             if (logged.name != axis.name || axis.positions_only) continue;
             detail::check_speed_of_loop(axis, machine, logged, log);
             const auto& period = axis.drive.set_point_period_s;
-            if (!axis.drive.takes_position() || !period) continue;
-            const bool sent = logged.command_unit == key_of("m", axis.kind);
-            const auto rows =
-                static_cast<double>(detail::rows_of_a_set_point(sent ? logged.command : logged.reference));
-            if (const double seen = rows * machine.sample_period_s; std::abs(seen / *period - 1) > 0.01)
-                log.notes.push_back(
-                    fmt::format("{}: axis {}: the set-points change every {:.4g} s, and "
-                                "drive.set_point_period_s is {:.4g}: the drive is taken to read every "
-                                "{} of them.",
-                                log.file, axis.name, seen, *period,
-                                *period > seen ? fmt::format("{:.3g}th", *period / seen)
-                                               : std::string("one more than once")));
+            if (!axis.drive.closes() || !period) continue;
+            const bool commanded =
+                axis.drive.kind == drive_kind::velocity || logged.command_unit == key_of("m", axis.kind);
+            const std::size_t rows = rows_of_a_set_point(commanded ? logged.command : logged.reference);
+            const double seen = static_cast<double>(rows) * machine.sample_period_s;
+            const bool between = rows == 1 && *period < 0.999 * seen;
+            if (between || std::abs(seen / *period - 1) <= 0.01) continue;
+            log.notes.push_back(fmt::format("{}: axis {}: the set-points change every {:.4g} s, and "
+                                            "drive.set_point_period_s is {:.4g}: the drive is taken to read "
+                                            "every {} of them.",
+                                            log.file, axis.name, seen, *period,
+                                            *period > seen ? fmt::format("{:.3g}th", *period / seen)
+                                                           : std::string("one more than once")));
         }
 }
 

@@ -142,15 +142,18 @@ public:
     }
 
     /// What the encoder reads of where the load is [m].
-    Real reading(const state& s) const noexcept {
+    Real reading(const state& s) const noexcept { return seen(s) + reading_error(s); }
+    /// How much of that is not where the encoder sits [m].
+    Real reading_error(const state& s) const noexcept {
+        Real wrong(0);
+        if (!has_reading_error_) return wrong;
         const Real at = seen(s);
-        if (!has_reading_error_) return at;
-        Real y = at;
-        if (cyclic_.present()) y += cyclic_(at);
+        if (cyclic_.present()) wrong += cyclic_(at);
         if (laws_.at(joint::reading))
-            y += laws_(joint::reading, joint_point<Real>{at, s.v, Real(0), Real(0), h_}, s.laws);
-        return y;
+            wrong += laws_(joint::reading, joint_point<Real>{at, s.v, Real(0), Real(0), h_}, s.laws);
+        return wrong;
     }
+    bool has_reading_error() const noexcept { return has_reading_error_; }
     /// Where that is which the encoder sits on [m].
     Real seen(const state& s) const noexcept {
         return has_motor_encoder_ ? select(sees_motor_, s.x, s.load) : s.load;

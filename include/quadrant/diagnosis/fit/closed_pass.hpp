@@ -41,6 +41,7 @@ namespace detail {
 template <class Real> loop_numbers<Real> side_by_side(const closed_input& in) {
     loop_numbers<Real> out;
     out.kind = in.plant_of[0].loops.kind;
+    out.reads_log = in.plant_of[0].loops.reads_log;
     for (std::size_t i = 0; i < lane_count<Real>; ++i) {
         const loop_numbers<double>& n = in.plant_of[i < in.plants ? i : in.plants - 1].loops;
         set_lane(out.servo.gain, i, n.servo.gain);

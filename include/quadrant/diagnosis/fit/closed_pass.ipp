@@ -49,7 +49,7 @@ QUADRANT_DIAGNOSIS_DECL void predictor::pass_closed(std::span<const plant_model>
     for (std::size_t i = 0; i < plants.size(); ++i) {
         const drive_model& d = plants[i].drive;
         follows[i] = drive->follows(d, steps);
-        each[i] = {axis_parameters(plants[i]), loops_of(d, drive->constant), follows[i]->value.data(),
+        each[i] = {axis_parameters(plants[i]), loops_of(d, *drive), follows[i]->value.data(),
                    follows[i]->velocity.data(), drive->in_volts ? d.velocity_per_V : 1};
         e[i] = innovation[i].data();
     }

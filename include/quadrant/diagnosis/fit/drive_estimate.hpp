@@ -5,6 +5,7 @@
 #include "../machine/machine.hpp"
 #include "identified_number.hpp"
 
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@ namespace quadrant::inline v0::diagnosis {
 struct drive_estimate {
     std::vector<identified_number> numbers;
     interpolation between = interpolation::hold; ///< of the set-points: the better of hold and linear
+    std::optional<double> set_point_period_s{};  ///< where they came between the rows of the log, too
     double path_rms = 0;                         ///< between the record and the simulated path [m]
     double path_noise = 0;                       ///< of the reading [m]
 

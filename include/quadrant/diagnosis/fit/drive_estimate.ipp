@@ -19,13 +19,10 @@ public:
         const auto compare = [&](candidate c) {
             if (c.objective < best.objective) best = std::move(c);
         };
-        if (tries_integral()) {
-            candidate c = fitted(with_integral(best.plant));
-            // One number more has to pay for itself as a number of the record's size does.
-            c.objective += 0.5 * std::log(static_cast<double>(rows_));
-            compare(std::move(c));
-        }
+        if (tries_integral()) compare(with_one_more(fitted(with_integral(best.plant))));
         if (axis_.drive.takes_position() && !axis_.drive.between) compare(fitted(with_lines(best.plant)));
+        if (may_come_between_rows(axis_.drive, path_.set_point))
+            compare(with_one_more(fitted(with_more_set_points(best.plant))));
         look_at(best);
         std::vector<identified_number> all = conclude(best);
         // A force that few axes have and that is not identified is not written: the others are fitted once more
@@ -45,12 +42,19 @@ public:
         }
         out.numbers = std::move(all);
         out.between = best.plant.drive.between;
+        if (!axis_.drive.set_point_period_s && best.plant.drive.set_point_period > 0)
+            out.set_point_period_s = best.plant.drive.set_point_period;
         out.path_noise = noise_;
         out.path_rms = std::sqrt(best.ms);
         return out;
     }
 
 private:
+    /// One number more has to pay for itself as a number of the record's size does.
+    candidate with_one_more(candidate c) const {
+        c.objective += 0.5 * std::log(static_cast<double>(rows_));
+        return c;
+    }
     /// Takes a weight, with its direction, and a load friction that are not identified out of a model, and
     /// returns them: few axes have them. What every axis has stays free beside the gains that it trades with.
     static std::vector<identified_number> without(candidate& c, const std::vector<identified_number>& all) {

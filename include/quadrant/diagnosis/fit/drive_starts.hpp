@@ -4,6 +4,7 @@
 #include "drive_record.hpp"
 #include "fit.hpp"
 
+#include <array>
 #include <fmt/format.h>
 
 namespace quadrant::inline v0::diagnosis::detail {
@@ -30,15 +31,23 @@ protected:
             }
         return out;
     }
-    /// The loops that were found with held set-points, their set-points as lines: half a row later.
+    /// Held set-points as lines: up to a row later.
     std::vector<plant_model> with_lines(const plant_model& found) const {
-        std::vector<plant_model> out;
-        for (const double earlier : {0.0, 0.5, 1.0}) {
-            plant_model p = found;
-            p.drive.between = p.drive_as_described.between = interpolation::linear;
-            if (!knows("drive.command_delay_s"))
-                p.drive.delay = std::max(0.0, p.drive.delay - earlier * period_);
-            out.push_back(p);
+        return with_set_points(found, {0, -0.5, -1}, interpolation::linear, found.drive.set_point_period);
+    }
+    /// Set-points between the rows, too: a held one is half a row late there.
+    std::vector<plant_model> with_more_set_points(const plant_model& found) const {
+        return with_set_points(found, {0, 0.5, 1}, found.drive.between, period_ / set_points_in_a_row);
+    }
+    /// The loops that were found, with other set-points, which are used so many rows later.
+    std::vector<plant_model> with_set_points(const plant_model& found, std::array<double, 3> later,
+                                             interpolation between, double every) const {
+        std::vector<plant_model> out(later.size(), found);
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            for (drive_model* d : {&out[i].drive, &out[i].drive_as_described})
+                d->between = between, d->set_point_period = every;
+            double& delay = out[i].drive.delay;
+            if (!knows("drive.command_delay_s")) delay = std::max(0.0, delay + later[i] * period_);
         }
         return out;
     }

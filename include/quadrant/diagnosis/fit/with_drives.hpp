@@ -48,11 +48,15 @@ inline std::vector<double> measured_behind(const axis_description& axis, const a
     return log.effort.empty() ? std::vector<double>{} : force(log.effort, log.effort_unit, log.effort_step);
 }
 
+/// Whether the log has the reading of an encoder at the motor beside that of the load.
+inline bool has_motor_encoder(const axis_description& axis, const axis_log& log) {
+    return !log.motor.empty() && !log.turn && axis.transmission.to_load(log.motor_unit).has_value();
+}
 /// The position on which a drive closes its loops: the motor's where that was read, in units of the load and
 /// from its mean zero. A transmission that gives way is then outside of the loop.
 inline std::vector<double> seen_by_drive(const axis_description& axis, const axis_log& log) {
+    if (!has_motor_encoder(axis, log)) return log.position;
     const std::optional<double> to_load = axis.transmission.to_load(log.motor_unit);
-    if (log.motor.empty() || log.turn || !to_load) return log.position;
     std::vector<double> out = log.motor;
     double zero = 0;
     for (std::size_t k = 0; k < out.size(); ++k) {
@@ -132,6 +136,7 @@ inline axis_log with_drive(const axis_description& axis, const axis_log& log, do
     motion->set_point = d.kind == drive_kind::velocity || command_in_m ? log.command : log.reference;
     motion->in_volts = log.command_unit == "V";
     motion->position = seen_by_drive(axis, log);
+    motion->one_encoder = !has_motor_encoder(axis, log);
     motion->off = log.drive_off;
     for (std::size_t k = 0; k < log.drive_off.size() && k < out.left_out.size(); ++k)
         if (log.drive_off[k] == 1) out.left_out[k] = 0; // the mechanics go on

@@ -16,14 +16,17 @@ QUADRANT_DIAGNOSIS_DECL closed_loop_run simulate_driven(const axis_description& 
     const std::size_t n = log.position.size();
     std::unique_ptr<loop_inputs> in;
     std::unique_ptr<running_controller> controller;
+    plant_model driven = plant;
     if (axis.controller && plant.drive.kind == drive_kind::velocity) {
         in = std::make_unique<loop_inputs>(loop_columns::of(log), period);
         controller = begun(*made(*axis.controller, axis.actuator, period), *in, motion.set_point[0]);
+        driven.drive.set_point_period =
+            std::max(period, plant.drive.set_point_period); // it commands once a row
     }
     const double count = axis.encoder.resolution_m;
     closed_loop_run out{std::vector<double>(n), {}};
     out.command = run_closed(
-        plant, motion, period, (log.position[1] - log.position[0]) / period, log.other_acceleration,
+        driven, motion, period, (log.position[1] - log.position[0]) / period, log.other_acceleration,
         [&](std::size_t k, double reading, std::vector<double>& set_point) {
             if (!sensor_noise.empty()) reading += sensor_noise[k];
             out.position[k] = count > 0 ? std::round(reading / count) * count : reading;

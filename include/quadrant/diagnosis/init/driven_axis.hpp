@@ -114,6 +114,14 @@ private:
         if (ask_.drive == drive_kind::position) check_beside_follower(log, found);
         if (description.drive.takes_position() && found.between != interpolation::hold)
             here()["drive"]["interpolation"] = name_of(found.between);
+        if (found.set_point_period_s) {
+            here()["drive"]["set_point_period_s"] = rounded(*found.set_point_period_s);
+            text_.note(
+                fmt::format("axis {}: with set-points between the rows the drive fits the log better than "
+                            "with one a row: the controller is faster than the log. Of its period, "
+                            "set_point_period_s, the log says no more: {:.4g} s is {} to a row.",
+                            axis_, *found.set_point_period_s, set_points_in_a_row));
+        }
         std::string loose;
         for (const identified_number& n : found.numbers) {
             const init_field& f = field_of(n.key);

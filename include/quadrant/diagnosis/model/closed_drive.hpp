@@ -34,17 +34,19 @@ template <class Real> struct loop_numbers {
     number of_duty{1};     ///< actuator command a unit of what the loops give: supply [V], or 1/[N/V]
     number start_force{0}; ///< of the velocity loop [N]
     number off_from{0}, off_until{0}; ///< part of the record in which the drive gives nothing [s]
+    bool reads_log =
+        false; ///< of all lanes: the drive reads the encoder of the log, with what it reads wrongly
 };
 
-/// `constant`: force of a unit of the actuator's command, as described, where the drive gives a force.
-inline loop_numbers<double> loops_of(const drive_model& d, double constant) {
+inline loop_numbers<double> loops_of(const drive_model& d, const driven_motion& motion) {
     return {.kind = d.kind,
             .servo = d.servo_numbers(),
             .loop = d.position_loop_numbers(),
-            .of_duty = d.kind == drive_kind::position_servo ? d.supply : 1 / constant,
+            .of_duty = d.kind == drive_kind::position_servo ? d.supply : 1 / motion.constant,
             .start_force = d.start_force,
             .off_from = d.off_from,
-            .off_until = d.off_until};
+            .off_until = d.off_until,
+            .reads_log = motion.one_encoder};
 }
 
 /// An axis with its drive's loops closed on it, one of them or one in each lane: what a drive does on the
@@ -62,6 +64,7 @@ public:
     void begin(Real position, Real velocity, Real set_point) {
         state_ = Axis::state::at(mechanics_.position_of(position), velocity);
         velocity_before_ = velocity;
+        read_wrongly_ = mechanics_.reading_error(state_);
         loop_ = velocity_loop<Real>::state::at(velocity, Real(numbers_.start_force));
         follower_ = position_servo<Real>::state::at(set_point);
     }
@@ -106,8 +109,14 @@ private:
     /// at the step's beginning would be half a step late, and the axis would lose damping by it.
     Real given(Real set_point, Real its_velocity) {
         const auto moves = either(less(state_.v, Real(0)), greater(state_.v, Real(0)));
-        const Real v = select(moves, state_.v + Real(0.5) * (state_.v - velocity_before_), state_.v);
-        const Real x = state_.x + half_step_ * state_.v;
+        Real v = select(moves, state_.v + Real(0.5) * (state_.v - velocity_before_), state_.v);
+        Real x = state_.x + half_step_ * state_.v;
+        if (numbers_.reads_log && mechanics_.has_reading_error()) {
+            const Real wrong = mechanics_.reading_error(state_), more = Real(0.5) * (wrong - read_wrongly_);
+            x += wrong + more;
+            v += more / half_step_;
+            read_wrongly_ = wrong;
+        }
         if (numbers_.kind == drive_kind::position_servo) {
             const Real duty = servo_(follower_, set_point, x);
             servo_.follow(follower_, set_point); // its profile is in the middle of the step, too
@@ -125,6 +134,7 @@ private:
     velocity_loop<Real> inner_;
     typename Axis::state state_{};
     Real velocity_before_{0}; ///< of the step
+    Real read_wrongly_{0};    ///< as the step before began
     Real added_{0};
     typename velocity_loop<Real>::state loop_{};
     typename position_servo<Real>::state follower_{};
@@ -139,7 +149,7 @@ std::vector<double> run_closed(const plant_model& plant, const driven_motion& mo
     const std::size_t n = motion.set_point.size();
     const int steps = steps_of_drive(plant, period);
     const double h = period / steps, scale = motion.in_volts ? plant.drive.velocity_per_V : 1;
-    closed_axis<double, plant_axis> axis(axis_parameters(plant), loops_of(plant.drive, motion.constant), h);
+    closed_axis<double, plant_axis> axis(axis_parameters(plant), loops_of(plant.drive, motion), h);
     axis.begin(motion.position[0], velocity, motion.set_point[0]);
     auto anew = motion.begins.begin();
     const auto received = motion.set_points_of(plant.drive);

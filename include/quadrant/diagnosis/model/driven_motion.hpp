@@ -3,6 +3,7 @@
 #pragma once
 #include "../log/log.hpp"
 #include "../log/signals.hpp"
+#include "../machine/set_point_rows.hpp"
 #include "drive_model.hpp"
 
 #include <cmath>
@@ -21,37 +22,38 @@ struct log_start {
     double velocity;
 };
 
-/// In which row of each set-point's rows a column changes: a recorder begins at any of them. 0: it changes in
-/// every row, or at no steady rate.
-inline std::size_t row_of_change(std::span<const double> column, double every) {
-    const auto rows = static_cast<std::size_t>(std::lround(every));
-    if (rows < 2 || std::abs(every - static_cast<double>(rows)) > 1e-6) return 0;
-    std::vector<std::size_t> changes(rows, 0);
-    std::size_t all = 0;
-    for (std::size_t k = 1; k < column.size(); ++k)
-        if (column[k] != column[k - 1]) ++changes[k % rows], ++all;
-    const auto most = std::max_element(changes.begin(), changes.end());
-    return all > 0 && 20 * *most >= 19 * all ? static_cast<std::size_t>(most - changes.begin()) : 0;
-}
-
 /// When a drive takes the set-points of a record, on its own clock.
 struct set_point_arrivals {
     double every; ///< [rows]
     double first; ///< row of the first one
+    bool between; ///< several come in a row of the log, which has one of them
 
     /// `set_points`: one a row, of one log.
     set_point_arrivals(const drive_model& d, double period, std::span<const double> set_points)
         : set_point_arrivals(d.set_point_period > 0 ? d.set_point_period / period : 1, d, set_points) {}
     /// The newest row as the n-th one arrives: one comes twice, or never, where the two clocks differ.
-    std::size_t row(long n) const {
-        return static_cast<std::size_t>(
-            std::max(0.0, std::floor(first + static_cast<double>(n) * every + 1e-6)));
+    std::size_t row(long n) const { return static_cast<std::size_t>(at(n)); }
+    /// The n-th one, of the set-points in these rows. Of several in a row it lies on the curve through them.
+    double value(std::span<const double> rows, long n) const {
+        const std::size_t k = std::min(row(n), rows.size() - 1);
+        return between ? on_curve(rows, k, at(n) - static_cast<double>(row(n))) : rows[k];
     }
 
 private:
     set_point_arrivals(double rows, const drive_model& d, std::span<const double> set_points)
         : every(rows * (1 + std::clamp(d.clock_slip, -0.5, 0.5))),
-          first(static_cast<double>(row_of_change(set_points, rows))) {}
+          first(static_cast<double>(row_of_change(set_points, rows))), between(rows < 0.999) {}
+
+    double at(long n) const { return std::max(0.0, first + static_cast<double>(n) * every + 1e-6); }
+    /// At the share p of the way from a row to the next: the line, less the sagitta on which both ends agree. A
+    /// step is no curve.
+    static double on_curve(std::span<const double> x, std::size_t row, double p) {
+        const auto at = [&](std::size_t k) { return x[std::min(k, x.size() - 1)]; };
+        const double a = at(row > 0 ? row - 1 : 0), b = at(row), c = at(row + 1), d = at(row + 2),
+                     here = a - 2 * b + c, there = b - 2 * c + d;
+        const double bend = here * there > 0 ? (std::abs(here) < std::abs(there) ? here : there) : 0;
+        return b + p * (c - b) - 0.5 * p * (1 - p) * bend;
+    }
 };
 
 /// The set-points of a record on the drive's clock: what its loops follow during each part of a row.
@@ -108,7 +110,7 @@ private:
         next_ = 0;
     }
     void arrive() {
-        const double x = values_[std::min(arrivals_.row(next_), values_.size() - 1)];
+        const double x = arrivals_.value(values_, next_);
         // A lost set-point repeats the one before; on average a share of them does.
         line_.arrive(state_, x + loss_ * (state_.last[0] - x));
         ++next_;
@@ -212,6 +214,7 @@ struct driven_motion {
     std::vector<double> set_point;          ///< command of a velocity drive, else position; one a row
     bool in_volts = false;                  ///< a velocity drive's command
     std::vector<double> position, velocity; ///< of the motor [m], [m/s]
+    bool one_encoder = true; ///< the position of the log is what the drive reads; else the motor has an encoder
     std::vector<double> position_in_parts, velocity_in_parts; ///< in the middle of each part of each row
     std::vector<unsigned char> off; ///< rows in which the drive gives nothing; empty: none
     /// What was measured behind the drive at the rows: duty of a position servo, else force [N]; empty: nothing
