@@ -214,7 +214,7 @@ QUADRANT_DIAGNOSIS_DECL void how_far::draw(axis_signals& s, const stage& after) 
         s.simulated_position_after = after.loop->position;
         if (case_.axis.controller && !case_.axis.drive.closes())
             s.command_replayed = replay_controller(*case_.axis.controller, case_.axis.actuator, judged_.period,
-                                                   log_.reference, log_.position, log_.command);
+                                                   loop_columns::of(log_));
     }
     spectrum(s.residual_before, judged_.period, judged_.bandwidth_Hz, s.frequency_Hz, s.spectrum_before);
     spectrum(s.residual_after, judged_.period, judged_.bandwidth_Hz, s.frequency_Hz, s.spectrum_after);

@@ -28,6 +28,7 @@ struct drive_description {
     std::optional<double> force_limit_N;
     std::optional<double> position_gain_per_s, velocity_feedforward;
     std::optional<double> set_point_period_s;          ///< absent: the sample period
+    bool set_point_period_guessed = false;             ///< of a log that fits better so: no file says it
     std::optional<interpolation> between{};            ///< of the set-points; absent: hold
     std::optional<double> position_gain_per_m;         ///< duty a metre (radian), of a position servo
     std::optional<double> minimum_duty, maximum_duty;  ///< absent: 0, 1

@@ -57,4 +57,10 @@ inline bool is_lag_within_a_row(const axis_case& c, const cause& named) {
     return std::abs(named.parameters.front().values.front().value - described) < c.record.period / 2;
 }
 
+/// Whether a cause acts on a command whose set-points between the rows are a guess: when they come is then one
+/// as well.
+inline bool rests_on_guessed_set_points(const axis_case& c, const effect& e) {
+    return c.axis.drive.set_point_period_guessed && (e.box == "drive" || e.box == "actuator");
+}
+
 } // namespace quadrant::inline v0::diagnosis::detail

@@ -29,7 +29,8 @@ inline bool is_no_claim(const axis_case& c, const effect& e, const cause& named,
            may_be_inside_its_tolerance(c, named.parameters) || drowns_in_the_rest(c, e) ||
            lies_beyond(named, c.best()) || late_velocity(c, named) > 0 ||
            repeats_with_the_motion(c.record, named) || outdoes_the_drive(c.record, c.best().fit.plant, named) ||
-           is_lag_within_a_row(c, named) || cancelled_by(c, e) || is_shadow_of_cogging(c, e) ||
+           is_lag_within_a_row(c, named) || rests_on_guessed_set_points(c, e) || cancelled_by(c, e) ||
+           is_shadow_of_cogging(c, e) ||
            (!c.at_floor() &&
             (rings_beyond(c.record, named) || repeats_too_seldom(c.record, c.best().fit.plant, e.name))) ||
            std::any_of(e.ends_inside.begin(), e.ends_inside.end(),
