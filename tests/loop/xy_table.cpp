@@ -251,8 +251,8 @@ TEST_CASE("xy_table: a copy is a snapshot and drives nothing but itself") {
 }
 
 TEST_CASE("along: of the other axis or of no axis is refused, as a plain quantity it is read") {
-    using ax = along<axis::x, quantity_of<s::voltage>>;
-    using ay = along<axis::y, quantity_of<s::voltage>>;
+    using ax = along<x_direction, quantity_of<s::voltage>>;
+    using ay = along<y_direction, quantity_of<s::voltage>>;
     static_assert(std::is_convertible_v<ax, quantity_of<s::voltage>>);
     static_assert(!std::is_convertible_v<quantity_of<s::voltage>, ax>);
     static_assert(!std::is_constructible_v<ax, ay>);
